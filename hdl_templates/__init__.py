@@ -1,0 +1,1 @@
+"""Hardware building blocks: Amaranth components, each with its golden model beside it."""

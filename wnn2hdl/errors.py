@@ -1,0 +1,58 @@
+"""The errors a user can cause: each names the fault, the value at fault and the mend, on one line."""
+
+
+class Wnn2hdlError(Exception):
+    """The root of every error this project raises on purpose.
+
+    Attributes:
+        exit_status: what the command line returns: 2 for bad usage, bad input or a missing tool, 1 for a
+            check or gate that failed.
+    """
+
+    exit_status = 2
+
+    def __init__(self, fault: str, *, value: object = None, mend: str = "") -> None:
+        self.fault = fault
+        self.value = value
+        self.mend = mend
+        super().__init__(self.line())
+
+    def line(self) -> str:
+        """The one line a user sees: ``fault: value; mend``."""
+        text = self.fault if self.value is None else f"{self.fault}: {self.value}"
+        text = f"{text}; {self.mend}" if self.mend else text
+        return " ".join(text.split())
+
+
+class InputError(Wnn2hdlError):
+    """A file, folder or option given by the user cannot be used."""
+
+
+class ModelFileError(InputError):
+    """A model file, or another saved value, is damaged, truncated, too new or something else."""
+
+
+class ExtraMissingError(Wnn2hdlError):
+    """An optional package is needed; the mend names the extra to install."""
+
+
+class ToolError(Wnn2hdlError):
+    """An outside program cannot be found, failed, or ran out of time.
+
+    Attributes:
+        command: the command as it was started.
+        output: what it printed, standard output and standard error together.
+    """
+
+    def __init__(
+        self, fault: str, *, value: object = None, mend: str = "", command: str = "", output: str = ""
+    ) -> None:
+        super().__init__(fault, value=value, mend=mend)
+        self.command = command
+        self.output = output
+
+
+class CheckError(Wnn2hdlError):
+    """A check or a gate failed: the circuit differs from the model, or costs more than allowed."""
+
+    exit_status = 1

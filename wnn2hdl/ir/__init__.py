@@ -1,0 +1,33 @@
+"""The contract between stages: encoders, models, tables, covers, LUT networks, windows and their files."""
+
+from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.encoder import CHANNELS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect, Encoder, Thermometer
+from wnn2hdl.ir.model import WisardModel
+from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork
+from wnn2hdl.ir.tables import Cover, Cube, TruthTable
+from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
+
+__all__ = [
+    "CENTRE",
+    "CHANNELS",
+    "CONSTANTS",
+    "LUT_INPUTS",
+    "MAX_TABLE_INPUTS",
+    "PIXEL_BITS",
+    "PIXEL_BIT_NAMES",
+    "WINDOW_BITS",
+    "WINDOW_CODES",
+    "BitSelect",
+    "Cover",
+    "Cube",
+    "EdgeFilter",
+    "Encoder",
+    "Lut",
+    "LutNetwork",
+    "Thermometer",
+    "TruthTable",
+    "WisardModel",
+    "bits_to_codes",
+    "codes_to_bits",
+    "window_codes",
+]

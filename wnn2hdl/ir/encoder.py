@@ -1,0 +1,145 @@
+"""Encoders: how a pixel or a feature vector becomes the bits that a network reads."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+CHANNELS = ("R", "G", "B")
+"""Channels of a pixel, in the order of an image's last axis."""
+
+CHANNEL_BITS = 8
+"""Bits of a channel; bit 7 is the most significant."""
+
+PIXEL_BITS = len(CHANNELS) * CHANNEL_BITS
+"""Bits of a pixel in hardware: red in bits 23…16, green in 15…8, blue in 7…0."""
+
+
+@dataclass(frozen=True)
+class BitSelect:
+    """Chosen bits of the colour channels: pure wiring, no logic.
+
+    Attributes:
+        bits: names such as ``R7``: a channel of `CHANNELS`, then a bit number, 7 the most significant. The
+            first named is code bit 0.
+    """
+
+    kind: ClassVar[str] = "bits"
+    bits: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        for name in self.bits:
+            if name not in PIXEL_BIT_NAMES:
+                raise ValueError(
+                    f"{name!r} is no pixel bit; use R, G or B and a number from 0 to 7, as in R7"
+                )
+        if not self.bits:
+            raise ValueError("no bits were chosen; name at least one, as in R7")
+        if len(set(self.bits)) != len(self.bits):
+            raise ValueError(f"a bit is named twice in {','.join(self.bits)}")
+
+    @property
+    def width(self) -> int:
+        """Bits of a code."""
+        return len(self.bits)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each code bit."""
+        return self.bits
+
+    @property
+    def pixel_positions(self) -> tuple[int, ...]:
+        """For each code bit, its position in the 24-bit pixel word (see `PIXEL_BITS`)."""
+        return tuple(PIXEL_BIT_NAMES[name] for name in self.bits)
+
+    def codes(self, pixels: ArrayLike) -> NDArray[np.int64]:
+        """Codes of pixels.
+
+        Args:
+            pixels: uint8 ``S + (3,)``, channels in the order of `CHANNELS`.
+
+        Returns:
+            int64 ``S``; bit ``i`` is ``bits[i]``.
+        """
+        array = np.asarray(pixels)
+        codes = np.zeros(array.shape[:-1], dtype=np.int64)
+        for position, name in enumerate(self.bits):
+            channel = array[..., CHANNELS.index(name[0])]
+            codes |= (channel.astype(np.int64) >> int(name[1]) & 1) << position
+        return codes
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `encoder_from_json`."""
+        return {"kind": self.kind, "bits": list(self.bits)}
+
+
+@dataclass(frozen=True)
+class Thermometer:
+    """Each feature compared with its own rising thresholds.
+
+    Attributes:
+        thresholds: per feature, its thresholds in rising order. Bit ``t`` of a feature is
+            ``x >= thresholds[t]``; bits are feature-major: all of feature 0, then all of feature 1.
+    """
+
+    kind: ClassVar[str] = "thermometer"
+    thresholds: tuple[tuple[float, ...], ...]
+
+    def __post_init__(self) -> None:
+        for feature, levels in enumerate(self.thresholds):
+            if not all(np.isfinite(levels)) or any(a >= b for a, b in pairwise(levels)):
+                raise ValueError(f"the thresholds of feature {feature} do not rise: {levels}")
+        if self.width == 0:
+            raise ValueError("a thermometer needs at least one threshold")
+
+    @property
+    def width(self) -> int:
+        """Bits of a code."""
+        return sum(len(levels) for levels in self.thresholds)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each code bit: ``x3_t0`` is feature 3 against its first threshold."""
+        return tuple(f"x{f}_t{t}" for f, levels in enumerate(self.thresholds) for t in range(len(levels)))
+
+    def bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """Bits of feature vectors.
+
+        Args:
+            features: numbers, ``[samples, features]``.
+
+        Returns:
+            bool ``[samples, width]``.
+        """
+        array = np.asarray(features, dtype=np.float64)
+        columns = [array[:, f, np.newaxis] >= np.asarray(t) for f, t in enumerate(self.thresholds)]
+        return np.concatenate(columns, axis=1)
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `encoder_from_json`."""
+        return {"kind": self.kind, "thresholds": [list(levels) for levels in self.thresholds]}
+
+
+Encoder = BitSelect | Thermometer
+
+
+def encoder_from_json(data: dict[str, Any]) -> Encoder:
+    """The encoder that wrote ``data`` (already checked against the model schema).
+
+    Raises:
+        ValueError: bits or thresholds that no encoder can have.
+    """
+    if data["kind"] == BitSelect.kind:
+        return BitSelect(tuple(data["bits"]))
+    return Thermometer(tuple(tuple(float(x) for x in levels) for levels in data["thresholds"]))
+
+
+PIXEL_BIT_NAMES = {
+    f"{channel}{bit}": (len(CHANNELS) - 1 - position) * CHANNEL_BITS + bit
+    for position, channel in enumerate(CHANNELS)
+    for bit in range(CHANNEL_BITS)
+}
+"""Position in the 24-bit pixel word of every bit of a pixel, by name."""

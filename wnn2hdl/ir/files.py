@@ -1,0 +1,89 @@
+"""Reading and writing the project's JSON: whole files or nothing."""
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.errors import InputError, ModelFileError
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file under a temporary name, then rename it, so that nothing half-written is ever seen.
+
+    Raises:
+        InputError: the folder does not exist or cannot be written.
+    """
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """As `write_text`, for bytes."""
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise InputError(
+            "cannot write", value=f"{path} ({error.strerror})", mend="choose a folder you may write to"
+        ) from error
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder and its parents.
+
+    Raises:
+        InputError: it cannot be made, or something else has its name.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            "cannot make the folder", value=f"{path} ({error.strerror})", mend="choose another one"
+        ) from error
+    if not os.access(path, os.W_OK):
+        raise InputError("cannot write into the folder", value=path, mend="choose another one")
+
+
+def read_json(path: Path, what: str) -> dict[str, Any]:
+    """Read a JSON object.
+
+    Args:
+        path: the file.
+        what: what it should hold, for the error: "a model".
+
+    Raises:
+        ModelFileError: the file is missing, no text, no JSON, or no object.
+    """
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ModelFileError(f"cannot read {what}", value=f"{path} ({error.strerror})") from error
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise ModelFileError(
+            f"not {what}, or a damaged one",
+            value=f"{path} ({error})",
+            mend="give the JSON file as it was saved",
+        ) from error
+    if not isinstance(data, dict):
+        raise ModelFileError(f"not {what}", value=f"{path} (holds a JSON {type(data).__name__})")
+    return data
+
+
+def write_json(path: Path, data: dict[str, Any]) -> None:
+    """Write a JSON object, indented, in the order given; the same data give the same bytes."""
+    write_text(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+
+
+def _umask() -> int:
+    current = os.umask(0)
+    os.umask(current)
+    return current

@@ -1,0 +1,210 @@
+"""The trained network: RAM discriminators, their mapping, their counts and the bleaching threshold."""
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Self
+
+import jsonschema
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wnn2hdl.errors import ModelFileError
+from wnn2hdl.ir.codes import bits_to_codes, codes_to_bits
+from wnn2hdl.ir.encoder import Encoder, encoder_from_json
+from wnn2hdl.ir.files import read_json, write_json
+
+FORMAT = "wnn2hdl-model"
+VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class WisardModel:
+    """A WiSARD: one discriminator a class, each of ``k`` RAMs with ``n`` address bits.
+
+    A RAM fires if the count at its address reaches the bleaching threshold; a discriminator's response is how
+    many of its RAMs fire (the reference design's r_i(x)); the highest response wins, and among equal ones the
+    class named first. A network of one RAM a class that reads every bit is a plain look-up table.
+
+    Attributes:
+        encoder: what turns a pixel or features into the ``encoder.width`` input bits.
+        classes: class names; for a pixel model the first is the background (forest), and an output bit of the
+            3x3 block is set for any other.
+        mapping: int64 ``[m, k, n]``, indices of input bits; ``m`` is 1 (all classes share it) or the number
+            of classes. Entry 0 of the last axis is the RAM's least significant address bit.
+        counts: int64 ``[classes, k, 2**n]``, how often each address was seen in training.
+        bleaching: the threshold, at least 1.
+        training: where the model comes from (seed, data, chosen threshold …), any JSON object.
+    """
+
+    encoder: Encoder
+    classes: tuple[str, ...]
+    mapping: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    bleaching: int
+    training: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if len(self.classes) < 2 or len(set(self.classes)) != len(self.classes):
+            raise ValueError(f"a model needs at least two different classes, not {list(self.classes)}")
+        if self.mapping.ndim != 3 or self.mapping.shape[0] not in (1, len(self.classes)):
+            raise ValueError(f"the mapping has shape {self.mapping.shape}; it must be [1 or classes, k, n]")
+        if self.mapping.min() < 0 or self.mapping.max() >= self.encoder.width:
+            raise ValueError(
+                f"the mapping reads input bit {self.mapping.max()} of {self.encoder.width}; bits count from 0"
+            )
+        expected = (len(self.classes), self.rams, 1 << self.address_bits)
+        if self.counts.shape != expected:
+            raise ValueError(f"the counts have shape {self.counts.shape}; the mapping asks for {expected}")
+        if self.counts.min() < 0:
+            raise ValueError(f"a count is negative: {self.counts.min()}")
+        if self.bleaching < 1:
+            raise ValueError(f"the bleaching threshold is {self.bleaching}; the lowest is 1")
+
+    @property
+    def rams(self) -> int:
+        """k, the RAMs of a discriminator."""
+        return int(self.mapping.shape[1])
+
+    @property
+    def address_bits(self) -> int:
+        """n, the address bits of a RAM."""
+        return int(self.mapping.shape[2])
+
+    @property
+    def saturation(self) -> NDArray[np.float64]:
+        """Share of the addresses that fire, ``[classes, k]``; a RAM at 1 answers yes to everything."""
+        return np.asarray((self.counts >= self.bleaching).mean(axis=2))
+
+    def responses(self, bits: ArrayLike) -> NDArray[np.int64]:
+        """Firing RAMs of each discriminator.
+
+        Args:
+            bits: bool ``[samples, encoder.width]``.
+
+        Returns:
+            int64 ``[samples, classes]``, each from 0 to ``rams``.
+        """
+        flags = np.asarray(bits, dtype=np.bool_)
+        fires = self.counts >= self.bleaching
+        result = np.zeros((len(flags), len(self.classes)), dtype=np.int64)
+        for group, mapping in enumerate(self.mapping):
+            owners = range(len(self.classes)) if len(self.mapping) == 1 else (group,)
+            for ram, inputs in enumerate(mapping):
+                address = bits_to_codes(flags[:, inputs])
+                for owner in owners:
+                    result[:, owner] += fires[owner, ram, address]
+        return result
+
+    def evaluate(self, bits: ArrayLike) -> NDArray[np.int64]:
+        """Index of the winning class for bits ``[samples, encoder.width]``: int64 ``[samples]``."""
+        return np.asarray(self.responses(bits).argmax(axis=1))
+
+    def evaluate_all_codes(self) -> NDArray[np.int64]:
+        """The class of every code, int64 ``[2**encoder.width]``; a pixel model is this table."""
+        return self.evaluate(codes_to_bits(np.arange(1 << self.encoder.width), self.encoder.width))
+
+    def digest(self) -> str:
+        """SHA-256 of all that decides the model's answers (not of `training`), hexadecimal."""
+        data = self.to_json()
+        del data["training"]
+        return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+    def to_json(self) -> dict[str, Any]:
+        """The model file's object; RAMs are stored as their non-zero addresses and counts."""
+        return {
+            "format": FORMAT,
+            "version": VERSION,
+            "encoder": self.encoder.to_json(),
+            "classes": list(self.classes),
+            "address_bits": self.address_bits,
+            "rams": self.rams,
+            "bleaching": self.bleaching,
+            "mapping": self.mapping.tolist(),
+            "counts": [[_sparse(ram) for ram in discriminator] for discriminator in self.counts],
+            "training": self.training,
+        }
+
+    def save(self, path: Path) -> None:
+        """Write the model file."""
+        write_json(path, self.to_json())
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read and check a model file.
+
+        Raises:
+            ModelFileError: the file is missing, damaged, of a newer version, or no model.
+        """
+        data = read_json(path, "a model")
+        _check_format(data, path)
+        try:
+            return cls.from_json(data)
+        except ValueError as error:
+            raise ModelFileError("the model contradicts itself", value=f"{path} ({error})") from error
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Self:
+        """The model of an object that fits the schema; raises ValueError if it contradicts itself."""
+        mapping = np.array(data["mapping"], dtype=np.int64)
+        shape = (data["rams"], data["address_bits"])
+        if mapping.shape[1:] != shape:
+            raise ValueError(f"the mapping has shape {mapping.shape}; rams and address_bits say {shape}")
+        if len(data["counts"]) != len(data["classes"]) or any(len(d) != shape[0] for d in data["counts"]):
+            raise ValueError("counts must hold a list a class with an entry a RAM")
+        counts = np.stack([[_dense(ram, shape[1]) for ram in rams] for rams in data["counts"]])
+        return cls(
+            encoder=encoder_from_json(data["encoder"]),
+            classes=tuple(data["classes"]),
+            mapping=mapping,
+            counts=counts,
+            bleaching=data["bleaching"],
+            training=data["training"],
+        )
+
+
+@cache
+def _validator() -> jsonschema.Draft202012Validator:
+    schema = json.loads(files(__package__).joinpath("model.schema.json").read_text(encoding="utf-8"))
+    return jsonschema.Draft202012Validator(schema)
+
+
+def _check_format(data: dict[str, Any], path: Path) -> None:
+    if data.get("format") != FORMAT:
+        raise ModelFileError(
+            "not a wnn2hdl model", value=f"{path} (format {data.get('format')!r})", mend="train or import one"
+        )
+    version = data.get("version")
+    if isinstance(version, int) and version > VERSION:
+        raise ModelFileError(
+            "the model was saved by a newer wnn2hdl",
+            value=f"{path} (version {version})",
+            mend="upgrade wnn2hdl",
+        )
+    error = jsonschema.exceptions.best_match(_validator().iter_errors(data))
+    if error is not None:
+        where = "/".join(str(step) for step in error.absolute_path) or "the top level"
+        raise ModelFileError(
+            "the model file is damaged",
+            value=f"{path} (at {where}: {error.message[:120]})",
+            mend="save it again",
+        )
+
+
+def _sparse(ram: NDArray[np.int64]) -> dict[str, list[int]]:
+    addresses = np.flatnonzero(ram)
+    return {"addresses": addresses.tolist(), "counts": ram[addresses].tolist()}
+
+
+def _dense(ram: dict[str, list[int]], address_bits: int) -> NDArray[np.int64]:
+    addresses, counts = ram["addresses"], ram["counts"]
+    if len(addresses) != len(counts) or len(set(addresses)) != len(addresses):
+        raise ValueError("a RAM needs as many counts as addresses, and no address twice")
+    if addresses and max(addresses) >= 1 << address_bits:
+        raise ValueError(f"address {max(addresses)} does not fit {address_bits} address bits")
+    dense = np.zeros(1 << address_bits, dtype=np.int64)
+    dense[addresses] = counts
+    return dense
