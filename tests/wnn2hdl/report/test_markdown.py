@@ -1,0 +1,88 @@
+"""The page a person reads."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from wnn2hdl.report import (
+    BuildReport,
+    Care,
+    Minimised,
+    PartFigures,
+    Parts,
+    Proof,
+    report_dict,
+    report_markdown,
+)
+
+FIGURES = PartFigures(
+    luts=18, inv=0, muxf7=2, muxf8=0, carry4=0, srl=0, ffs=0, bram36=0.5, dsp=0, delay_ps=1284
+)
+FULL = BuildReport(
+    name="amazon",
+    target="block",
+    mode="domain",
+    parts=Parts(block=FIGURES),
+    count="synth_xilinx -family xc7",
+    device="xc7z020clg484",
+    utilisation={"block": {"luts": 0.0338, "ffs": 0.0}},
+    minimised={"pixel": Minimised(60, 3, 720, 9)},
+    proof=Proof("proved", "SAT", 0.5),
+    care=Care(120, 0.9812),
+    accuracy=0.9,
+    options={"edges": "boundary|learned"},
+    hashes={"block.v": "ab12"},
+    tools={"yosys": "0.70"},
+    seconds={"synth": 7.25},
+)
+
+
+def page(report: BuildReport) -> str:
+    """The page of a report that has been written and read back."""
+    return report_markdown(json.loads(json.dumps(report_dict(report))))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "# amazon",
+        "Target block, mode domain, proof: proved by SAT in 0.50 s.",
+        "| block | 18 | 0 | 2 | 0 | 0 | 0 | 0 | 0.5 | 0 | 1284 |",
+        "Counted after `synth_xilinx -family xc7`.",
+        "| block | 0.034 % | 0.000 % |",
+        "## Published, not measured here",
+        "| accuracy of the circuit | 90.00 % |",
+        "| accuracy of the model | n/a |",
+        "| pixel codes cared for | 120 |",
+        "| pixel | 60 | 3 | 720 | 9 |",
+        "| edges | boundary\\|learned |",
+        "| block.v | ab12 |",
+        "| yosys | 0.70 |",
+        "| synth | 7.25 |",
+    ],
+)
+def test_every_figure_has_its_line(line: str) -> None:
+    assert line in page(FULL).splitlines()
+
+
+def test_what_was_not_measured_is_never_0() -> None:
+    assert "| sobel | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a |" in page(FULL)
+    assert "proof: not run." in page(replace(FULL, proof=Proof()))
+
+
+def test_it_says_that_yosys_is_not_vivado() -> None:
+    assert "**Yosys is not Vivado:**" in page(FULL)
+
+
+def test_published_figures_stand_under_their_own_heading_only() -> None:
+    measured, published = page(FULL).split("## Published, not measured here")
+    assert "| 135 | 49 |" in published
+    assert "135" not in measured
+
+
+def test_a_report_with_nothing_to_tell_has_no_empty_tables() -> None:
+    text = page(BuildReport("empty", "pixel", "exact", Parts()))
+    assert "## Minimised" not in text
+    assert "None" not in text
+    assert "\n\n\n" not in text

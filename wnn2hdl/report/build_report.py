@@ -1,0 +1,165 @@
+"""The figures of one build and their form as `report.json`."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+REPORT_VERSION = 1
+"""Of the form of `report.json`; it rises when a key changes its meaning or goes away."""
+
+
+@dataclass(frozen=True)
+class PartFigures:
+    """What one part costs; a figure that was not measured is None.
+
+    Attributes:
+        luts: LUT1 to LUT6 cells and, except for the Sobel baseline, leftover INV cells.
+        inv: leftover inverters.
+        muxf7: MUXF7 cells.
+        muxf8: MUXF8 cells.
+        carry4: carry chains of four bits.
+        srl: shift registers in LUTs.
+        ffs: flip-flops and latches.
+        bram36: block RAMs of 36 Kb, one of 18 Kb being half of one.
+        dsp: DSP slices.
+        delay_ps: logic delay in picoseconds, without routing.
+    """
+
+    luts: int | None = None
+    inv: int | None = None
+    muxf7: int | None = None
+    muxf8: int | None = None
+    carry4: int | None = None
+    srl: int | None = None
+    ffs: int | None = None
+    bram36: float | None = None
+    dsp: int | None = None
+    delay_ps: int | None = None
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a build; one that was not built has no figures."""
+
+    pixel: PartFigures = PartFigures()
+    edge: PartFigures = PartFigures()
+    block: PartFigures = PartFigures()
+    match: PartFigures = PartFigures()
+    sobel: PartFigures = PartFigures()
+
+
+@dataclass(frozen=True)
+class Minimised:
+    """The size of a cover before and after minimising.
+
+    Attributes:
+        cubes_before: product terms of the table as it was extracted, one for each input that gives 1.
+        cubes_after: product terms left.
+        literals_before: literals in the former.
+        literals_after: literals in the latter.
+    """
+
+    cubes_before: int
+    cubes_after: int
+    literals_before: int
+    literals_after: int
+
+
+@dataclass(frozen=True)
+class Proof:
+    """How the emitted Verilog was checked against the model.
+
+    Attributes:
+        status: ``proved``, ``simulated``, ``failed`` or ``not run``.
+        method: in words; None if it was not run.
+        seconds: wall clock; None if it was not run.
+    """
+
+    status: str = "not run"
+    method: str | None = None
+    seconds: float | None = None
+
+
+@dataclass(frozen=True)
+class Care:
+    """The inputs on which the circuit equals the model.
+
+    Attributes:
+        codes: how many pixel codes are cared for: all of them in exact mode.
+        coverage: the share of other imagery's pixels with such a code, 0 to 1; None if not measured.
+    """
+
+    codes: int | None = None
+    coverage: float | None = None
+
+
+@dataclass(frozen=True)
+class PublishedFigure:
+    """A figure that others published and nobody measured here."""
+
+    what: str
+    luts: int
+    registers: int | None
+    source: str
+
+
+_PAPER = "the reference design's paper, xc7z020clg484"
+
+PUBLISHED = (
+    PublishedFigure("block of nine pixel classifiers and an edge filter", 21, 0, _PAPER),
+    PublishedFigure("nine-bit match-and-count", 11, None, _PAPER),
+    PublishedFigure("Sobel, cited there as [33]", 135, 49, _PAPER),
+    PublishedFigure("Sobel, cited there as [34]", 114, None, _PAPER),
+)
+"""What the circuits are compared with; None where the paper gives no figure."""
+
+
+@dataclass(frozen=True)
+class BuildReport:
+    """Everything that is to be said about a build.
+
+    Attributes:
+        name: of the build.
+        target: ``block``, ``pixel``, ``edge`` or ``match``.
+        mode: ``exact`` or ``domain``.
+        parts: what each part costs.
+        count: the command by which the parts were counted.
+        device: the device of `utilisation`.
+        utilisation: for parts by name, percent of the device's resources by name.
+        minimised: by the name of the table.
+        proof: how the Verilog was checked.
+        care: where circuit and model are equal.
+        accuracy: of the circuit, 0 to 1, on labelled pixels; None if there were none.
+        model_accuracy: of the model on the same pixels.
+        options: the options of the command that are part of the result.
+        hashes: SHA-256 of files by name, in hexadecimal.
+        tools: versions of programs by name.
+        seconds: wall clock by stage.
+    """
+
+    name: str
+    target: str
+    mode: str
+    parts: Parts
+    count: str | None = None
+    device: str | None = None
+    utilisation: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    minimised: Mapping[str, Minimised] = field(default_factory=dict)
+    proof: Proof = Proof()
+    care: Care = Care()
+    accuracy: float | None = None
+    model_accuracy: float | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    hashes: Mapping[str, str] = field(default_factory=dict)
+    tools: Mapping[str, str] = field(default_factory=dict)
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+
+def report_dict(report: BuildReport) -> dict[str, Any]:
+    """The JSON object of `report.json`: the report's fields, its version, and the published figures."""
+    fields = asdict(report)
+    return {
+        "version": REPORT_VERSION,
+        **fields,
+        "published": [asdict(figure) | {"measured_here": False} for figure in PUBLISHED],
+    }

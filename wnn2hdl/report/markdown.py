@@ -1,0 +1,119 @@
+"""`report.json` as a page for a person."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+MISSING = "n/a"
+"""Stands where nothing was measured."""
+
+_COLUMNS = {
+    "luts": "LUTs",
+    "inv": "INV",
+    "muxf7": "MUXF7",
+    "muxf8": "MUXF8",
+    "carry4": "CARRY4",
+    "srl": "SRL",
+    "ffs": "FFs",
+    "bram36": "BRAM36",
+    "dsp": "DSP",
+    "delay_ps": "delay ps",
+}
+
+_COUNTING = """\
+LUTs are LUT1 to LUT6 cells (a LUT6_2 counts one) and leftover inverters; no packing of two small LUTs
+into one is assumed. The inverters left in the Sobel baseline are not among its LUTs. A block RAM of
+18 Kb is half a BRAM36. Delay is logic only, without routing. n/a: not measured.
+
+**Yosys is not Vivado:** Vivado packs, places and routes, and its counts for the same Verilog may differ.
+The published figures below come from other tools and are there for orientation."""
+
+
+def report_markdown(report: Mapping[str, Any]) -> str:
+    """Write a report for a person.
+
+    Args:
+        report: the object of `report.json`.
+    """
+    sections = [
+        f"# {report['name']}",
+        f"Target {report['target']}, mode {report['mode']}, proof: {_proof(report['proof'])}.",
+        "## Resources, measured",
+        _table(
+            ["part", *_COLUMNS.values()],
+            ([part, *(figures[key] for key in _COLUMNS)] for part, figures in report["parts"].items()),
+        ),
+        f"Counted after `{report['count']}`." if report["count"] else "",
+        _COUNTING,
+        _utilisation(report),
+        "## Published, not measured here",
+        _table(
+            ["circuit", "LUTs", "registers", "source"],
+            ([row["what"], row["luts"], row["registers"], row["source"]] for row in report["published"]),
+        ),
+        "## Answers",
+        _table(["figure", "value"], _answers(report)),
+        _minimised(report["minimised"]),
+        _mapping("Seconds", "stage", report["seconds"]),
+        _mapping("Options", "option", report["options"]),
+        _mapping("Tools", "tool", report["tools"]),
+        _mapping("SHA-256", "file", report["hashes"]),
+    ]
+    return "\n\n".join(section for section in sections if section) + "\n"
+
+
+def _proof(proof: Mapping[str, Any]) -> str:
+    method = f" by {proof['method']}" if proof["method"] else ""
+    seconds = f" in {proof['seconds']:.2f} s" if proof["seconds"] is not None else ""
+    return f"{proof['status']}{method}{seconds}"
+
+
+def _answers(report: Mapping[str, Any]) -> list[tuple[str, str]]:
+    return [
+        ("accuracy of the circuit", _percent(report["accuracy"])),
+        ("accuracy of the model", _percent(report["model_accuracy"])),
+        ("pixel codes cared for", _cell(report["care"]["codes"])),
+        ("share of other imagery that these codes cover", _percent(report["care"]["coverage"])),
+    ]
+
+
+def _utilisation(report: Mapping[str, Any]) -> str:
+    parts: Mapping[str, Mapping[str, float]] = report["utilisation"]
+    if not parts:
+        return ""
+    kinds = list(dict.fromkeys(kind for shares in parts.values() for kind in shares))
+    rows = ([part, *(_share(shares.get(kind)) for kind in kinds)] for part, shares in parts.items())
+    heads = [_COLUMNS.get(kind, kind) for kind in kinds]
+    return f"## Share of the {report['device']}\n\n" + _table(["part", *heads], rows)
+
+
+def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
+    if not tables:
+        return ""
+    keys = ["cubes_before", "cubes_after", "literals_before", "literals_after"]
+    rows = ([name, *(sizes[key] for key in keys)] for name, sizes in tables.items())
+    return "## Minimised\n\n" + _table(["table", *(key.replace("_", " ") for key in keys)], rows)
+
+
+def _mapping(title: str, what: str, values: Mapping[str, Any]) -> str:
+    return f"## {title}\n\n" + _table([what, "value"], values.items()) if values else ""
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(_cell(value) for value in line)} |" for line in lines)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return MISSING
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return str(value).replace("|", "\\|").replace("\n", " ")
+
+
+def _percent(share: float | None) -> str:
+    return MISSING if share is None else f"{100 * share:.2f} %"
+
+
+def _share(percent: float | None) -> str:
+    return MISSING if percent is None else f"{percent:.3f} %"

@@ -1,0 +1,161 @@
+"""Synthesis of one or several designs with `synth_xilinx`."""
+
+import json
+import re
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from wnn2hdl.errors import InputError, ToolError
+from wnn2hdl.synth import cache
+from wnn2hdl.synth.resources import Resources, count_cells
+from wnn2hdl.tools import find_yosys, in_parallel
+
+OPTIONS = "synth_xilinx -family xc7 -flatten -noiopad"
+"""The one way in which everything is counted."""
+
+_TIMEOUT = 1800.0
+
+# synth_xilinx takes the timing arcs of CARRY4 away, and `sta` then reports a path that ends before the carry
+# chain (measured, Yosys 0.70), so the cells are read again before it.
+_SCRIPT = f"""\
+read_verilog design.v
+{OPTIONS} -top {{top}}
+tee -q -o stat.json stat -json
+write_verilog -noattr netlist.v
+read_verilog -lib -specify +/xilinx/cells_sim.v
+sta
+"""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A design to synthesise.
+
+    Attributes:
+        verilog: its source, Verilog-2005, complete.
+        top: the name of its top module.
+        baseline: count it as a baseline: leftover inverters are free.
+    """
+
+    verilog: str
+    top: str
+    baseline: bool = False
+
+
+@dataclass(frozen=True)
+class Synthesis:
+    """A synthesised design.
+
+    Attributes:
+        resources: what it costs.
+        netlist_verilog: the mapped netlist: 7-series cells under the top module's name and ports.
+        tool: which Yosys: ``pyosys``.
+        version: its version.
+        options: the command that was run, without the name of the top module.
+        seconds: how long it took when it was made, wall clock.
+    """
+
+    resources: Resources
+    netlist_verilog: str
+    tool: str
+    version: str
+    options: str
+    seconds: float
+
+
+def synthesise(verilog: str, top: str, *, baseline: bool = False) -> Synthesis:
+    """Map a design to 7-series cells with Yosys, count them and find the longest path.
+
+    The result is kept in a cache on disk: the same design, Yosys and options give it again at once.
+
+    Args:
+        verilog: the source, Verilog-2005, complete.
+        top: the name of the top module.
+        baseline: count leftover inverters as free.
+
+    Raises:
+        InputError: `top` is no Verilog identifier.
+        ToolError: there is no Yosys, or it fails: its ``ERROR:`` line is the value.
+        CheckError: the netlist has a cell that the count does not know.
+    """
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_$]*", top):
+        raise InputError("not a name of a Verilog module", value=repr(top))
+    yosys = find_yosys()
+    entry = cache.entry("synth", [verilog, top, _SCRIPT, yosys.name, yosys.version])
+    kept = cache.load(entry)
+    mapped = _map(verilog, top) if kept is None else _Mapped(**kept)
+    if kept is None:
+        cache.store(entry, asdict(mapped))
+    return Synthesis(
+        resources=count_cells(mapped.cells, delay_ps=mapped.delay_ps, baseline=baseline),
+        netlist_verilog=mapped.netlist,
+        tool=yosys.name,
+        version=yosys.version,
+        options=OPTIONS,
+        seconds=mapped.seconds,
+    )
+
+
+def synthesise_all(
+    jobs: Mapping[str, Job], *, done: Callable[[str], None] | None = None
+) -> dict[str, Synthesis]:
+    """Synthesise several designs at once, on all cores.
+
+    Args:
+        jobs: designs by name.
+        done: called with the name of each design as it gets done.
+
+    Returns:
+        The results by name, in the order of `jobs`.
+
+    Raises:
+        Wnn2hdlError: as `synthesise`, for the first design that fails; the others are stopped.
+    """
+    find_yosys()
+    names = list(jobs)
+    results: dict[str, Synthesis] = {}
+    for position, result in in_parallel(_synthesise_job, jobs.values()):
+        results[names[position]] = result
+        if done is not None:
+            done(names[position])
+    return {name: results[name] for name in names}
+
+
+def _synthesise_job(job: Job) -> Synthesis:
+    return synthesise(job.verilog, job.top, baseline=job.baseline)
+
+
+@dataclass(frozen=True)
+class _Mapped:
+    """What one run of Yosys finds out: cells by type, delay in picoseconds, netlist, wall-clock seconds."""
+
+    cells: dict[str, int]
+    delay_ps: int | None
+    netlist: str
+    seconds: float
+
+
+def _map(verilog: str, top: str) -> _Mapped:
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory(prefix="wnn2hdl-synth-") as name:
+        folder = Path(name)
+        (folder / "design.v").write_text(verilog, encoding="utf-8")
+        log = find_yosys().run(_SCRIPT.format(top=top), cwd=folder, timeout=_TIMEOUT)
+        try:
+            statistics = json.loads((folder / "stat.json").read_text(encoding="utf-8"))
+            cells = {str(cell): int(n) for cell, n in statistics["design"]["num_cells_by_type"].items()}
+            netlist = (folder / "netlist.v").read_text(encoding="utf-8")
+        except (OSError, ValueError, LookupError, AttributeError) as error:
+            raise ToolError("Yosys wrote no statistics that can be read", value=error, output=log) from error
+    return _Mapped(cells, _delay_ps(log), netlist, time.perf_counter() - started)
+
+
+def _delay_ps(log: str) -> int | None:
+    """The arrival time that `sta` reports; None when it found no path or does not know a cell's delay."""
+    latest = re.search(r"^Latest arrival time in '.*' is (\d+):", log, re.MULTILINE)
+    if latest is None or "has no timing arcs!" in log:
+        return None
+    return int(latest.group(1))
