@@ -1,0 +1,98 @@
+"""Labelled images and how they are split."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.errors import InputError
+
+CLASSES = ("forest", "deforested")
+"""The two classes of the reference design; the first is the background."""
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledImage:
+    """The labelled pixels of one image.
+
+    Attributes:
+        name: the image's file name, or the seed it was generated from.
+        pixels: uint8 ``[n, 3]``: red, green, blue.
+        labels: uint8 ``[n]``: class indices.
+    """
+
+    name: str
+    pixels: NDArray[np.uint8]
+    labels: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Dataset:
+    """A set of labelled images, each read when it is asked for.
+
+    Attributes:
+        classes: class names, the background first.
+        names: the images' names, all different, sorted.
+        load: reads one of them.
+    """
+
+    classes: tuple[str, ...]
+    names: tuple[str, ...]
+    load: Callable[[str], LabelledImage]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __iter__(self) -> Iterator[LabelledImage]:
+        return map(self.load, self.names)
+
+    def subset(self, names: Iterable[str]) -> "Dataset":
+        """The same set with only the images ``names``."""
+        return replace(self, names=tuple(sorted(names)))
+
+
+def folds(names: Iterable[str], count: int) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]:
+    """Cross-validation by image: in fold ``f`` the images with sorted index ``i % count == f`` are tested.
+
+    Returns:
+        for each fold the names to train on and the names to test on.
+
+    Raises:
+        InputError: fewer than two folds, or more folds than images.
+    """
+    ordered = sorted(names)
+    if not 2 <= count <= len(ordered):
+        raise InputError(
+            f"{len(ordered)} images cannot be split into {count} folds",
+            mend=f"choose from 2 to {len(ordered)}",
+        )
+    return tuple(
+        (
+            tuple(name for i, name in enumerate(ordered) if i % count != fold),
+            tuple(ordered[fold::count]),
+        )
+        for fold in range(count)
+    )
+
+
+def split(names: Iterable[str], test: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Hold images out: ``test`` of them, evenly spread over the sorted names.
+
+    Returns:
+        the names to train on and the names to test on.
+
+    Raises:
+        InputError: nothing would be left on one side.
+    """
+    ordered = sorted(names)
+    if not 1 <= test < len(ordered):
+        raise InputError(
+            f"{test} of {len(ordered)} images cannot be held out for the test",
+            mend="leave at least one image on each side",
+        )
+    held = {(2 * i + 1) * len(ordered) // (2 * test) for i in range(test)}
+    return (
+        tuple(name for i, name in enumerate(ordered) if i not in held),
+        tuple(name for i, name in enumerate(ordered) if i in held),
+    )
