@@ -3,7 +3,7 @@
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, bits_to_codes, codes_to_bits
 from wnn2hdl.ir.encoder import CHANNELS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect, Encoder, Thermometer
 from wnn2hdl.ir.model import WisardModel
-from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork
+from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux
 from wnn2hdl.ir.tables import Cover, Cube, TruthTable
 from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
 
@@ -24,6 +24,7 @@ __all__ = [
     "Encoder",
     "Lut",
     "LutNetwork",
+    "Mux",
     "Thermometer",
     "TruthTable",
     "WisardModel",

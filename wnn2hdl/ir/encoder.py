@@ -1,6 +1,7 @@
 """Encoders: how a pixel or a feature vector becomes the bits that a network reads."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -55,20 +56,30 @@ class BitSelect:
         """For each code bit, its position in the 24-bit pixel word (see `PIXEL_BITS`)."""
         return tuple(PIXEL_BIT_NAMES[name] for name in self.bits)
 
-    def codes(self, pixels: ArrayLike) -> NDArray[np.int64]:
+    @cached_property
+    def _shares(self) -> NDArray[np.uint32]:
+        """What each level of each channel adds to a code: uint32 ``[channels, 256]``."""
+        levels = np.arange(1 << CHANNEL_BITS, dtype=np.uint32)
+        shares = np.zeros((len(CHANNELS), len(levels)), dtype=np.uint32)
+        for position, name in enumerate(self.bits):
+            shares[CHANNELS.index(name[0])] |= (levels >> int(name[1]) & 1) << position
+        return shares
+
+    def codes(self, pixels: ArrayLike) -> NDArray[np.uint32]:
         """Codes of pixels.
 
         Args:
             pixels: uint8 ``S + (3,)``, channels in the order of `CHANNELS`.
 
         Returns:
-            int64 ``S``; bit ``i`` is ``bits[i]``.
+            uint32 ``S``; bit ``i`` is ``bits[i]``.
         """
-        array = np.asarray(pixels)
-        codes = np.zeros(array.shape[:-1], dtype=np.int64)
-        for position, name in enumerate(self.bits):
-            channel = array[..., CHANNELS.index(name[0])]
-            codes |= (channel.astype(np.int64) >> int(name[1]) & 1) << position
+        array = np.asarray(pixels, dtype=np.uint8)
+        # Every code bit comes from one channel, so a code is the OR of three look-ups.
+        red, green, blue = self._shares
+        codes = np.take(red, array[..., 0])
+        codes |= np.take(green, array[..., 1])
+        codes |= np.take(blue, array[..., 2])
         return codes
 
     def to_json(self) -> dict[str, Any]:

@@ -54,7 +54,8 @@ class WisardModel:
             raise ValueError(f"the mapping has shape {self.mapping.shape}; it must be [1 or classes, k, n]")
         if self.mapping.min() < 0 or self.mapping.max() >= self.encoder.width:
             raise ValueError(
-                f"the mapping reads input bit {self.mapping.max()} of {self.encoder.width}; bits count from 0"
+                f"the mapping reads input bits {self.mapping.min()} to {self.mapping.max()}; "
+                f"there are 0 to {self.encoder.width - 1}"
             )
         expected = (len(self.classes), self.rams, 1 << self.address_bits)
         if self.counts.shape != expected:
@@ -143,7 +144,7 @@ class WisardModel:
         _check_format(data, path)
         try:
             return cls.from_json(data)
-        except ValueError as error:
+        except (ValueError, TypeError, IndexError, OverflowError) as error:
             raise ModelFileError("the model contradicts itself", value=f"{path} ({error})") from error
 
     @classmethod

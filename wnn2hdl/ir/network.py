@@ -1,4 +1,4 @@
-"""Networks of look-up tables: what a table becomes once it is mapped to an FPGA's cells."""
+"""Networks of look-up tables and dedicated multiplexers: what a table becomes once it is mapped to cells."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -31,41 +31,88 @@ class Lut:
 
 
 @dataclass(frozen=True)
+class Mux:
+    """One dedicated multiplexer behind the LUTs: a MUXF7 joins two LUTs, a MUXF8 two MUXF7 (Xilinx UG474).
+
+    It costs no LUT, but its data pins are wired to fixed neighbours inside the slice: the data are therefore
+    two different cells of the level below, and each of them is the datum of this multiplexer only.
+
+    Attributes:
+        name: the signal it drives, unique in its network.
+        low: the cell that drives the output while `select` is 0 (pin I0).
+        high: the cell that drives the output while `select` is 1 (pin I1).
+        select: any signal of the network (pin S).
+    """
+
+    name: str
+    low: str
+    high: str
+    select: str
+
+
+@dataclass(frozen=True)
 class LutNetwork:
-    """A combinational network of LUTs, in topological order.
+    """A combinational network of LUTs and dedicated multiplexers, in topological order.
 
     Attributes:
         inputs: names of the network's inputs; input ``i`` is bit ``i`` of the code.
-        luts: each reads inputs of the network and LUTs before it.
-        outputs: pairs (output name, signal); the signal is an input, a LUT or one of `CONSTANTS`.
+        cells: each reads inputs of the network and cells before it.
+        outputs: pairs (output name, signal); the signal is an input, a cell or one of `CONSTANTS`.
     """
 
     inputs: tuple[str, ...]
-    luts: tuple[Lut, ...]
+    cells: tuple[Lut | Mux, ...]
     outputs: tuple[tuple[str, str], ...]
 
     def __post_init__(self) -> None:
         known = set(self.inputs)
-        for lut in self.luts:
-            if not 1 <= len(lut.inputs) <= LUT_INPUTS:
-                raise ValueError(f"{lut.name} has {len(lut.inputs)} inputs; a LUT has 1 to {LUT_INPUTS}")
-            if not 0 <= lut.init < 1 << (1 << len(lut.inputs)):
-                raise ValueError(f"{lut.name} has contents {lut.init:#x}, too wide for its inputs")
-            if lut.name in known or lut.name in CONSTANTS:
-                raise ValueError(f"{lut.name} is driven twice")
-            if missing := set(lut.inputs) - known:
-                raise ValueError(f"{lut.name} reads {sorted(missing)} before it is driven")
-            known.add(lut.name)
+        for cell in self.cells:
+            if isinstance(cell, Lut):
+                _check_contents(cell)
+                read = set(cell.inputs)
+            else:
+                read = {cell.low, cell.high, cell.select}
+            if cell.name in known or cell.name in CONSTANTS:
+                raise ValueError(f"{cell.name} is driven twice")
+            if missing := read - known:
+                raise ValueError(f"{cell.name} reads {sorted(missing)} before it is driven")
+            known.add(cell.name)
+        self._check_muxes()
         for name, signal in self.outputs:
             if signal not in known and signal not in CONSTANTS:
                 raise ValueError(f"output {name} reads {signal}, which nothing drives")
 
+    def _check_muxes(self) -> None:
+        height = {lut.name: 0 for lut in self.luts}
+        joined: set[str] = set()
+        for mux in self.muxes:
+            below = height.get(mux.low)
+            if mux.low == mux.high or below is None or below != height.get(mux.high) or below > 1:
+                raise ValueError(f"{mux.name} must join two LUTs, or two MUXF7, not {mux.low} and {mux.high}")
+            if shared := joined & {mux.low, mux.high}:
+                raise ValueError(f"{mux.name} joins {sorted(shared)}, as another multiplexer does")
+            joined |= {mux.low, mux.high}
+            height[mux.name] = below + 1
+
+    @property
+    def luts(self) -> tuple[Lut, ...]:
+        """The LUTs alone."""
+        return tuple(cell for cell in self.cells if isinstance(cell, Lut))
+
+    @property
+    def muxes(self) -> tuple[Mux, ...]:
+        """The dedicated multiplexers alone; one whose data are LUTs is a MUXF7, the others are MUXF8."""
+        return tuple(cell for cell in self.cells if isinstance(cell, Mux))
+
     @property
     def depth(self) -> int:
-        """LUTs on the longest path from an input to an output."""
+        """LUTs on the longest path from an input to an output; a multiplexer adds none."""
         level = dict.fromkeys((*self.inputs, *CONSTANTS), 0)
-        for lut in self.luts:
-            level[lut.name] = 1 + max(level[name] for name in lut.inputs)
+        for cell in self.cells:
+            if isinstance(cell, Lut):
+                level[cell.name] = 1 + max(level[name] for name in cell.inputs)
+            else:
+                level[cell.name] = max(level[cell.low], level[cell.high], level[cell.select])
         return max((level[signal] for _, signal in self.outputs), default=0)
 
     def evaluate(self, codes: ArrayLike) -> NDArray[np.bool_]:
@@ -77,12 +124,17 @@ class LutNetwork:
         }
         for position, name in enumerate(self.inputs):
             signals[name] = (values >> position & 1).astype(np.bool_)
-        for lut in self.luts:
-            contents = np.array([lut.init >> a & 1 for a in range(1 << len(lut.inputs))], dtype=np.bool_)
-            address = np.zeros(values.shape, dtype=np.int64)
-            for position, name in enumerate(lut.inputs):
-                address |= signals[name].astype(np.int64) << position
-            signals[lut.name] = contents[address]
+        for cell in self.cells:
+            if isinstance(cell, Lut):
+                contents = np.array(
+                    [cell.init >> a & 1 for a in range(1 << len(cell.inputs))], dtype=np.bool_
+                )
+                address = np.zeros(values.shape, dtype=np.int64)
+                for position, name in enumerate(cell.inputs):
+                    address |= signals[name].astype(np.int64) << position
+                signals[cell.name] = contents[address]
+            else:
+                signals[cell.name] = np.where(signals[cell.select], signals[cell.high], signals[cell.low])
         columns = [signals[signal] for _, signal in self.outputs]
         return np.stack(columns, axis=-1) if columns else np.zeros((*values.shape, 0), dtype=np.bool_)
 
@@ -90,7 +142,7 @@ class LutNetwork:
         """A JSON object; LUT contents are hexadecimal."""
         return {
             "inputs": list(self.inputs),
-            "luts": [{"name": x.name, "inputs": list(x.inputs), "init": f"{x.init:x}"} for x in self.luts],
+            "cells": [_cell_to_json(cell) for cell in self.cells],
             "outputs": [list(pair) for pair in self.outputs],
         }
 
@@ -98,8 +150,27 @@ class LutNetwork:
     def from_json(cls, data: dict[str, Any]) -> Self:
         """The inverse of `to_json`; raises `ModelFileError` on anything else."""
         try:
-            luts = tuple(Lut(x["name"], tuple(x["inputs"]), int(x["init"], 16)) for x in data["luts"])
+            cells = tuple(_cell_from_json(x) for x in data["cells"])
             outputs = tuple((name, signal) for name, signal in data["outputs"])
-            return cls(tuple(data["inputs"]), luts, outputs)
+            return cls(tuple(data["inputs"]), cells, outputs)
         except (KeyError, TypeError, ValueError) as error:
             raise ModelFileError("not a LUT network", value=error, mend="compile the model again") from error
+
+
+def _check_contents(lut: Lut) -> None:
+    if not 1 <= len(lut.inputs) <= LUT_INPUTS:
+        raise ValueError(f"{lut.name} has {len(lut.inputs)} inputs; a LUT has 1 to {LUT_INPUTS}")
+    if not 0 <= lut.init < 1 << (1 << len(lut.inputs)):
+        raise ValueError(f"{lut.name} has contents {lut.init:#x}, too wide for its inputs")
+
+
+def _cell_to_json(cell: Lut | Mux) -> dict[str, Any]:
+    if isinstance(cell, Lut):
+        return {"name": cell.name, "inputs": list(cell.inputs), "init": f"{cell.init:x}"}
+    return {"name": cell.name, "low": cell.low, "high": cell.high, "select": cell.select}
+
+
+def _cell_from_json(data: dict[str, Any]) -> Lut | Mux:
+    if "select" in data:
+        return Mux(data["name"], data["low"], data["high"], data["select"])
+    return Lut(data["name"], tuple(data["inputs"]), int(data["init"], 16))

@@ -73,7 +73,7 @@ class EdgeFilter:
         """The inverse of `to_json`; raises `ModelFileError` on anything else."""
         try:
             codes = data["patterns"]
-            if not all(isinstance(code, int) and 0 <= code < WINDOW_CODES for code in codes):
+            if not all(type(code) is int and 0 <= code < WINDOW_CODES for code in codes):
                 raise ValueError(f"a pattern is a whole number from 0 to {WINDOW_CODES - 1}")
             patterns = np.zeros(WINDOW_CODES, dtype=np.bool_)
             patterns[codes] = True

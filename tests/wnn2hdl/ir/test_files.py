@@ -1,0 +1,79 @@
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl.errors import InputError, ModelFileError
+from wnn2hdl.ir import files
+
+
+def test_the_same_data_give_the_same_bytes(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    files.write_json(path, {"b": 1, "a": ["é"]})
+    assert path.read_bytes() == '{\n "b": 1,\n "a": [\n  "é"\n ]\n}\n'.encode()
+    assert files.read_json(path, "a thing") == {"b": 1, "a": ["é"]}
+
+
+def test_writing_over_a_file_leaves_nothing_else_behind(tmp_path: Path) -> None:
+    path = tmp_path / "x.txt"
+    files.write_text(path, "old")
+    files.write_text(path, "new")
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_failed_write_keeps_the_old_file_and_no_scraps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "x.txt"
+    files.write_text(path, "old")
+
+    def interrupt(*args: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        files.write_text(path, "new")
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot write: .*No such file.*; choose a folder"):
+        files.write_text(tmp_path / "no" / "x.txt", "")
+
+
+def test_make_folder_makes_parents_and_minds_files(tmp_path: Path) -> None:
+    files.make_folder(tmp_path / "a" / "b")
+    files.make_folder(tmp_path / "a" / "b")
+    assert (tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="cannot make the folder"):
+        files.make_folder(tmp_path / "file")
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (None, "cannot read a model"),
+        (b"", "not a model, or a damaged one"),
+        (b'{"format":', "not a model, or a damaged one"),
+        (b"\xff\xfe\x00", "not a model, or a damaged one"),
+        (b"[" * 100_000, "not a model, or a damaged one"),
+        (b"[1, 2]", r"not a model: .* \(holds a JSON list\)"),
+    ],
+)
+def test_what_is_no_json_object_gets_one_line(tmp_path: Path, content: bytes | None, line: str) -> None:
+    path = tmp_path / "x.json"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ModelFileError, match=line) as caught:
+        files.read_json(path, "a model")
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
+
+
+def test_a_number_too_long_for_python_gets_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_text('{"a": ' + "9" * 5000 + "}")
+    with pytest.raises(ModelFileError, match="not a model, or a damaged one"):
+        files.read_json(path, "a model")

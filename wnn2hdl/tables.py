@@ -1,0 +1,111 @@
+"""From a model to its truth table, and from imagery to the codes the table has to care about."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import (
+    MAX_TABLE_INPUTS,
+    WINDOW_CODES,
+    BitSelect,
+    TruthTable,
+    WisardModel,
+    codes_to_bits,
+    window_codes,
+)
+
+
+def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> TruthTable:
+    """The model as one truth table over its input bits.
+
+    Args:
+        model: any model of at most `MAX_TABLE_INPUTS` input bits.
+        care: bool ``[2**width]``, the codes that matter; all of them if left out.
+
+    Returns:
+        A table with the inputs ``model.encoder.names`` and the outputs ``class_bit0`` …, the index of the
+        winning class in binary, least significant bit first; two classes have one output.
+
+    Raises:
+        InputError: the model reads more bits than a table may have.
+    """
+    _check_width(model.encoder.width)
+    outputs = (len(model.classes) - 1).bit_length()
+    names = tuple(f"class_bit{position}" for position in range(outputs))
+    values = codes_to_bits(model.evaluate_all_codes(), outputs)
+    table = TruthTable.exact(model.encoder.names, names, values)
+    return table if care is None else table.with_care(care)
+
+
+def code_histogram(encoder: BitSelect, images: Iterable[NDArray[np.uint8]]) -> NDArray[np.int64]:
+    """How often each pixel code occurs, int64 ``[2**width]``.
+
+    Args:
+        encoder: what makes codes of pixels.
+        images: uint8 ``[height, width, 3]`` each; read one after the other, never held together.
+
+    Raises:
+        InputError: the encoder has more bits than a table may have.
+    """
+    _check_width(encoder.width)
+    total = np.zeros(1 << encoder.width, dtype=np.int64)
+    for image in images:
+        total += np.bincount(encoder.codes(image).ravel(), minlength=len(total))
+    return total
+
+
+def window_histogram(images: Iterable[ArrayLike]) -> NDArray[np.int64]:
+    """How often each 3x3 window occurs in binary images, int64 ``[512]``, indexed as in `window_codes`.
+
+    Args:
+        images: bool ``[height, width]`` each; one smaller than a window adds nothing.
+    """
+    total = np.zeros(WINDOW_CODES, dtype=np.int64)
+    for image in images:
+        flags = np.asarray(image, dtype=np.bool_)
+        if min(flags.shape) >= 3:
+            total += np.bincount(window_codes(flags).ravel(), minlength=WINDOW_CODES)
+    return total
+
+
+def care_set(histogram: NDArray[np.int64], minimum: int) -> NDArray[np.bool_]:
+    """The codes that occur at least ``minimum`` times, bool shaped as ``histogram``.
+
+    Raises:
+        InputError: ``minimum`` is below 1, or no code occurs that often.
+    """
+    if minimum < 1:
+        raise InputError(
+            "a care set cannot ask for so few occurrences", value=minimum, mend="ask for 1 or more"
+        )
+    care = histogram >= minimum
+    if not care.any():
+        raise InputError(
+            "no code occurs often enough to be cared for",
+            value=f"{minimum} times asked, {histogram.max()} at most seen",
+            mend="ask for fewer or give more imagery",
+        )
+    return care
+
+
+def coverage(histogram: NDArray[np.int64], care: NDArray[np.bool_]) -> float:
+    """Share of the counted pixels whose code is in the care set, from 0 to 1.
+
+    Raises:
+        InputError: the histogram is empty.
+    """
+    total = int(histogram.sum())
+    if total == 0:
+        raise InputError("there are no pixels to measure the coverage on", mend="give imagery")
+    return int(histogram[care].sum()) / total
+
+
+def _check_width(width: int) -> None:
+    if width > MAX_TABLE_INPUTS:
+        raise InputError(
+            "too many input bits for one truth table",
+            value=f"{width} bits",
+            mend=f"choose at most {MAX_TABLE_INPUTS}",
+        )

@@ -1,0 +1,91 @@
+"""Pixel classifiers: trained on histograms of codes, answering from a table of all codes."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import MAX_TABLE_INPUTS, BitSelect, Encoder, WisardModel, codes_to_bits
+from wnn2hdl.wisard.rams import addresses, count
+
+
+def train_histogram(
+    histogram: NDArray[np.int64],
+    encoder: Encoder,
+    classes: tuple[str, ...],
+    mapping: NDArray[np.int64],
+    bleaching: int,
+    training: dict[str, Any] | None = None,
+) -> WisardModel:
+    """Train on the number of times each code occurs, which is all that the RAMs can tell apart.
+
+    The counts are those of training on the pixels one by one. They are not evened out between the classes:
+    over 8 splits of 30 Sentinel-2 scenes by image, scaling the classes to equal totals lowered the mean
+    accuracy on the held-out scenes from 85.0 % to 84.8 %.
+
+    Args:
+        histogram: int64 ``[classes, 2**encoder.width]``.
+        encoder: what made the codes.
+        classes: class names; the first is the background.
+        mapping: int64 ``[1 or classes, k, n]``, as `draw_mapping` gives it.
+        bleaching: the threshold, as `choose_bleaching` finds it.
+        training: what to note in the model's `WisardModel.training`.
+
+    Raises:
+        InputError: a class has no pixels.
+    """
+    for name, pixels in zip(classes, histogram, strict=True):
+        if not pixels.any():
+            raise InputError(
+                "a class has no training pixels", value=name, mend="give images that show every class"
+            )
+    codes = np.flatnonzero(histogram.any(axis=0))
+    where = addresses(codes_to_bits(codes, encoder.width), mapping)
+    counts = [
+        count(where[owner % len(where)], mapping.shape[2], pixels[codes])
+        for owner, pixels in enumerate(histogram)
+    ]
+    return WisardModel(encoder, classes, mapping, np.stack(counts), bleaching, training or {})
+
+
+class PixelClassifier:
+    """A pixel model as the table of all its answers.
+
+    Args:
+        model: one whose encoder is a `BitSelect` of at most `MAX_TABLE_INPUTS` bits, of at most 256 classes.
+
+    Attributes:
+        table: uint8 ``[2**width]``, the winning class of each code.
+
+    Raises:
+        InputError: the model reads no pixels, or too many bits or classes for a table.
+    """
+
+    def __init__(self, model: WisardModel) -> None:
+        encoder = model.encoder
+        if not isinstance(encoder, BitSelect):
+            raise InputError(
+                "the model does not read pixels",
+                value=f"its encoder is of kind {encoder.kind}",
+                mend="use a pixel model",
+            )
+        if encoder.width > MAX_TABLE_INPUTS or len(model.classes) > 256:
+            raise InputError(
+                "the model is too large for a table",
+                value=f"{encoder.width} bits, {len(model.classes)} classes",
+                mend=f"choose at most {MAX_TABLE_INPUTS} bits and 256 classes",
+            )
+        self.table = model.evaluate_all_codes().astype(np.uint8)
+        self._encoder = encoder
+
+    def classify(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """Class index of every pixel.
+
+        Args:
+            image: uint8 ``S + (3,)``.
+
+        Returns:
+            uint8 ``S``.
+        """
+        return np.take(self.table, self._encoder.codes(image))
