@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from wnn2hdl.errors import ToolError
+from wnn2hdl.minimise import recipes
+from wnn2hdl.minimise.decompose import decompose
+from wnn2hdl.minimise.draft import Draft
+from wnn2hdl.minimise.recipes import care_candidates, from_blif, network_candidates, to_blif, truth_candidates
+
+WIDTH = 8
+BITS = (np.arange(1 << WIDTH) >> np.arange(WIDTH)[:, np.newaxis] & 1).astype(np.uint8)
+
+
+def values_of(draft: Draft) -> np.ndarray:
+    values = draft.evaluate(BITS)
+    return np.stack([values[x] for x in draft.outputs], axis=1).astype(bool)
+
+
+@pytest.fixture
+def truth() -> np.ndarray:
+    return np.random.default_rng(0).random((1 << WIDTH, 2)) < 0.3
+
+
+def test_every_truth_recipe_works_and_is_right(truth: np.ndarray) -> None:
+    found = list(truth_candidates(truth, effort=2))
+    assert len(found) == sum(map(len, recipes._FROM_TRUTH[:3]))
+    assert all((values_of(draft) == truth).all() for _, draft in found)
+
+
+def test_care_recipes_are_right_on_the_care_set(truth: np.ndarray) -> None:
+    care = np.random.default_rng(1).random(1 << WIDTH) < 0.4
+    found = list(care_candidates(truth, care, effort=2))
+    assert len(found) == 2
+    assert all((values_of(draft)[care] == truth[care]).all() for _, draft in found)
+
+
+def test_networks_go_to_abc_and_back(truth: np.ndarray) -> None:
+    draft = Draft(WIDTH)
+    rng = np.random.default_rng(0)
+    everything = tuple(range(WIDTH))
+    draft.outputs = [decompose(draft, everything, x, ~x, rng) for x in truth.T]
+    assert (values_of(from_blif(to_blif(draft), WIDTH)) == truth).all()
+    assert all((values_of(found) == truth).all() for _, found in network_candidates(draft, effort=2))
+
+
+def test_a_recipe_that_crashes_costs_only_itself(truth: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A malformed truth table makes ABC end with a segmentation fault.
+    scripts = (("first", "lutmin -K 6"), ("crash", "read_truth 12345"), ("last", "lutmin -K 6"))
+    monkeypatch.setattr(recipes, "_FROM_TRUTH", (scripts,))
+    assert [name for name, _ in truth_candidates(truth, effort=0)] == ["first", "last"]
+
+
+def test_a_missing_abc_is_told(truth: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> None:
+        raise ToolError("no yosys-abc found")
+
+    monkeypatch.setattr(recipes, "find_abc", missing)
+    with pytest.raises(ToolError, match="no yosys-abc found"):
+        list(truth_candidates(truth, effort=0))
