@@ -1,0 +1,120 @@
+"""Accuracy on unseen images against LUTs a pixel, of several classifiers, in one table.
+
+    python benchmarks/accuracy.py IMAGES MASKS [--mappings 20] [--seed 0]
+
+Five-fold cross-validation by image over a folder of pictures and one of masks. LUTs are those of the
+classifier trained on all images, as mapped; logistic regression is no circuit here and has none.
+"""
+
+import argparse
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import PolynomialFeatures, StandardScaler
+
+from wnn2hdl.bitselect import MOST_LUTS, look_up_table, select_bits
+from wnn2hdl.dataset import CLASSES, ColourHistogram, colour_histogram, from_masks
+from wnn2hdl.encode import high_bits
+from wnn2hdl.ir import BitSelect, WisardModel
+from wnn2hdl.minimise import map_luts
+from wnn2hdl.pipeline.budget import code_histogram, saturates, train_discriminators
+from wnn2hdl.pipeline.crossval import FOLDS, Trainer, cross_validate
+from wnn2hdl.tables import pixel_table
+
+RED = BitSelect(tuple(f"R{bit}" for bit in range(8)))
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("images", type=Path)
+    parser.add_argument("masks", type=Path)
+    parser.add_argument("--mappings", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    images = [colour_histogram(image, 2) for image in from_masks(given.images, given.masks)]
+    print("| classifier | accuracy | LUTs a pixel |\n|---|---|---|")
+
+    row("red threshold", *measured(images, partial(red_threshold, images)))
+    print(f"| quadratic logistic regression on RGB | {regression_accuracy(images):.4f} | |")
+
+    encoder = high_bits()
+    histograms = np.stack([code_histogram(image, encoder) for image in images])
+    trials: list[tuple[float, Trainer]] = []
+    for seed in range(given.seed, given.seed + given.mappings):
+        train = partial(train_discriminators, histograms, encoder, CLASSES, seed)
+        if not saturates(train(range(len(images)))):
+            trials.append((cross_validate(images, train), train))
+    mean = np.mean([accuracy for accuracy, _ in trials])
+    print(f"| WiSARD n = 4, k = 16, mean of {len(trials)} mappings | {mean:.4f} | |")
+    best, most_accurate = max(trials, key=lambda trial: trial[0])
+    row("the best of them", best, luts(most_accurate(range(len(images)))))
+
+    for count in range(1, MOST_LUTS + 1):
+
+        def select(chosen: Sequence[int], count: int = count) -> WisardModel:
+            return select_bits([images[i] for i in chosen], CLASSES, luts=count, seed=given.seed)
+
+        row(f"bit selection, {count} LUT", *measured(images, select))
+
+
+def row(name: str, accuracy: float, luts: int) -> None:
+    """Print a row of the table."""
+    print(f"| {name} | {accuracy:.4f} | {luts} |", flush=True)
+
+
+def measured(images: Sequence[ColourHistogram], train: Trainer) -> tuple[float, int]:
+    """Accuracy in cross-validation, and LUTs of the model trained on all images."""
+    return cross_validate(images, train), luts(train(range(len(images))))
+
+
+def luts(model: WisardModel) -> int:
+    """LUTs of a model's exact circuit."""
+    return len(map_luts(pixel_table(model)).network.luts)
+
+
+def red_threshold(images: Sequence[ColourHistogram], chosen: Sequence[int]) -> WisardModel:
+    """Deforested is what is at least as red as the threshold with the most training pixels right."""
+    reds = sum(code_histogram(images[i], RED) for i in chosen)
+    assert not isinstance(reds, int)
+    above = reds[:, ::-1].cumsum(axis=1)[:, ::-1]
+    right = above[1] + reds[0].sum() - above[0]
+    answers = (np.arange(256) >= right.argmax()).astype(np.int64)
+    return look_up_table(RED, CLASSES, answers, {})
+
+
+def regression_accuracy(images: Sequence[ColourHistogram]) -> float:
+    """Cross-validated accuracy of a logistic regression on RGB, its squares and products."""
+    right = 0
+    for fold in range(FOLDS):
+        answer = quadratic_regression([image for i, image in enumerate(images) if i % FOLDS != fold])
+        for image in images[fold::FOLDS]:
+            right += int(image.counts[answer(image.pixels), np.arange(len(image.colours))].sum())
+    return right / sum(int(image.counts.sum()) for image in images)
+
+
+def quadratic_regression(
+    images: Sequence[ColourHistogram],
+) -> Callable[[NDArray[np.uint8]], NDArray[np.int64]]:
+    """Fit to the colours of images, each class's pixels as weights."""
+    pixels = np.concatenate([image.pixels for image in images])
+    weights = np.concatenate([image.counts for image in images], axis=1)
+    used = weights.ravel() > 0
+    samples = np.tile(pixels, (2, 1))[used].astype(np.float64)
+    labels = np.repeat([0, 1], len(pixels))[used]
+    model = make_pipeline(
+        PolynomialFeatures(2, include_bias=False),
+        StandardScaler(),
+        LogisticRegression(solver="newton-cholesky"),
+    )
+    model.fit(samples, labels, logisticregression__sample_weight=weights.ravel()[used])
+    return lambda colours: np.asarray(model.predict(colours.astype(np.float64)), dtype=np.int64)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+"""The smooth reference: what a classifier of any cost would say, as the aim of those that are cheap."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from sklearn.linear_model import LogisticRegression
+
+from wnn2hdl.bitselect.drift import Colours
+
+INVERSE_RIDGE = 1e4
+"""Inverse strength of the ridge penalty for weights that sum to 1: next to none, yet never singular."""
+
+Probability = Callable[[NDArray[np.int64]], NDArray[np.float64]]
+
+
+def fit_reference(colours: Colours) -> Probability:
+    """The mean of two logistic regressions, one on RGB and one on the logarithms of RGB.
+
+    Either alone is a plane through its space; on images that were not trained on, their mean was at least as
+    accurate as each, and as a quadratic one.
+
+    Args:
+        colours: weights of two classes.
+
+    Returns:
+        a function from colours, int64 ``[u, 3]``, to the probability of the second class, float64 ``[u]``.
+    """
+    labels = np.repeat([0, 1], len(colours.rgb))
+    weights = colours.weights.ravel()
+    used = weights > 0
+    fits = []
+    for features in (_linear, _logarithmic):
+        samples = np.tile(features(colours.rgb), (2, 1))[used]
+        # Three features and very many samples: Newton's method needs a few passes only.
+        regression = LogisticRegression(C=INVERSE_RIDGE, solver="newton-cholesky")
+        regression.fit(samples, labels[used], sample_weight=weights[used] / weights.sum())
+        fits.append((features, regression))
+
+    def probability(rgb: NDArray[np.int64]) -> NDArray[np.float64]:
+        answers = [regression.predict_proba(features(rgb))[:, 1] for features, regression in fits]
+        return np.asarray(np.mean(answers, axis=0))
+
+    return probability
+
+
+def _linear(rgb: NDArray[np.int64]) -> NDArray[np.float64]:
+    return (rgb - 50) / 20
+
+
+def _logarithmic(rgb: NDArray[np.int64]) -> NDArray[np.float64]:
+    return np.log1p(rgb) * 4 - 16
