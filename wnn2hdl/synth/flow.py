@@ -18,12 +18,15 @@ OPTIONS = "synth_xilinx -family xc7 -flatten -noiopad"
 
 _TIMEOUT = 1800.0
 
+# Modules that keep their hierarchy are dissolved once they are mapped, since `sta` looks into one module only.
 # synth_xilinx takes the timing arcs of CARRY4 away, and `sta` then reports a path that ends before the carry
 # chain (measured, Yosys 0.70), so the cells are read again before it.
 _SCRIPT = f"""\
 read_verilog design.v
 {OPTIONS} -top {{top}}
 tee -q -o stat.json stat -json
+setattr -mod -unset keep_hierarchy *
+flatten
 write_verilog -noattr netlist.v
 read_verilog -lib -specify +/xilinx/cells_sim.v
 sta
@@ -146,7 +149,10 @@ def _map(verilog: str, top: str) -> _Mapped:
         log = find_yosys().run(_SCRIPT.format(top=top), cwd=folder, timeout=_TIMEOUT)
         try:
             statistics = json.loads((folder / "stat.json").read_text(encoding="utf-8"))
-            cells = {str(cell): int(n) for cell, n in statistics["design"]["num_cells_by_type"].items()}
+            # Modules that keep their hierarchy are listed beside the cells inside them, which are counted.
+            modules = {name.removeprefix("\\") for name in statistics["modules"]}
+            totals = statistics["design"]["num_cells_by_type"]
+            cells = {str(cell): int(n) for cell, n in totals.items() if cell not in modules}
             netlist = (folder / "netlist.v").read_text(encoding="utf-8")
         except (OSError, ValueError, LookupError, AttributeError) as error:
             raise ToolError("Yosys wrote no statistics that can be read", value=error, output=log) from error

@@ -1,0 +1,39 @@
+# Each target does all its own set-up, in a virtual environment that git ignores.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# Optional parts to install besides the package and its developers' tools, as in EXTRAS=sim.
+EXTRAS ?=
+
+comma := ,
+STAMP := $(VENV)/.installed$(subst $(comma),-,$(EXTRAS))
+
+.PHONY: demo test lint types layers check clean
+
+demo: $(STAMP)
+	$(BIN)/wnn2hdl demo
+
+test: $(STAMP)
+	$(BIN)/pytest
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(STAMP)
+	$(BIN)/mypy
+
+layers: $(STAMP)
+	$(BIN)/lint-imports
+
+check: lint types layers test
+
+$(STAMP): pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
+	$(BIN)/python -m pip install --quiet --editable ".$(if $(EXTRAS),[$(EXTRAS)])" --group dev
+	touch $@
+
+clean:
+	rm -rf build dist $(VENV)

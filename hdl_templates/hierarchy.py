@@ -1,0 +1,49 @@
+"""Parts inside parts: submodules in simulation, instances of modules of their own in emitted Verilog."""
+
+from dataclasses import dataclass, field
+
+from amaranth.hdl import Fragment, Instance, Module
+from amaranth.lib import wiring
+
+
+class Part(wiring.Component):
+    """A component that becomes a Verilog module of its own.
+
+    Attributes:
+        module_name: name of that module; components of one name must be equal.
+        keep_hierarchy: whether a synthesiser must not dissolve the module into its surroundings.
+    """
+
+    module_name: str
+    keep_hierarchy = False
+
+
+@dataclass
+class Emission:
+    """The platform while Verilog is written; it collects the parts that a module instantiates.
+
+    Amaranth flattens the ports of submodules into single bits where it can. Writing each part by itself keeps
+    its ports as they are declared, and writes a part that occurs nine times once. Without this platform, as
+    in Amaranth's simulator, parts are plain submodules and no vendor cell is used.
+
+    Attributes:
+        parts: the parts found so far, by module name; a part comes after the parts inside it.
+    """
+
+    parts: dict[str, Part] = field(default_factory=dict)
+
+    def instance(self, part: Part) -> Instance:
+        """An instance of the part's module, connected to the part's members."""
+        # Elaborated here so that its own parts are found, before it, and Amaranth sees that it is in use.
+        Fragment.get(part, self)
+        self.parts.setdefault(part.module_name, part)
+        ports = {
+            f"{'i' if member.flow == wiring.In else 'o'}_{name}": getattr(part, name)
+            for name, member in part.signature.members.items()
+        }
+        return Instance(part.module_name, **ports)
+
+
+def place(m: Module, name: str, part: Part, platform: object) -> None:
+    """Place a part inside a module under construction."""
+    m.submodules[name] = platform.instance(part) if isinstance(platform, Emission) else part

@@ -1,0 +1,97 @@
+"""`compile`: a model becomes a build folder."""
+
+from pathlib import Path
+from typing import Any, get_args
+
+import click
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import file, folder
+from wnn2hdl.cli.output import emit, json_option, parts_table, progress
+from wnn2hdl.dataset import from_masks
+from wnn2hdl.errors import CheckError, InputError
+from wnn2hdl.ir import WisardModel
+from wnn2hdl.pipeline.compile import compile_model, require_luts
+from wnn2hdl.pipeline.design import Mode, Style, Target
+from wnn2hdl.pipeline.planning import CompileOptions
+
+
+@app.command("compile")
+@click.argument("model", type=file)
+@click.option("-o", "output", type=folder, required=True, help="The build folder to write, as in build/NAME.")
+@click.option("--target", type=click.Choice(get_args(Target)), default="block", show_default=True)
+@click.option(
+    "--mode",
+    type=click.Choice(get_args(Mode)),
+    default="exact",
+    show_default=True,
+    help="Equal to the model on every input, or on the codes that occur in --care.",
+)
+@click.option("--care", type=folder, help="Folder of imagery that makes the care set of domain mode.")
+@click.option(
+    "--care-min",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="How often a code must occur in it to be cared for.",
+)
+@click.option(
+    "--edges",
+    default="boundary",
+    show_default=True,
+    metavar="boundary|half-plane|learned|FILE",
+    help="Pattern set of the edge filter.",
+)
+@click.option("--edge-images", type=folder, help="Imagery to learn edge patterns from; --care by default.")
+@click.option(
+    "--edge-patterns",
+    type=click.IntRange(1, 510),
+    default=75,
+    show_default=True,
+    help="How many patterns are learned.",
+)
+@click.option(
+    "--edge-luts", type=click.IntRange(1, 3), help="Learn only patterns whose filter fits so many LUTs."
+)
+@click.option(
+    "--emit",
+    "style",
+    type=click.Choice(get_args(Style)),
+    default="luts",
+    show_default=True,
+    help="Equations, which synthesis may restructure, or explicit LUT cells, which it keeps.",
+)
+@click.option(
+    "--effort",
+    type=click.IntRange(0, 3),
+    default=1,
+    show_default=True,
+    help="How long to look for fewer LUTs.",
+)
+@click.option("--test-images", type=folder, help="Pictures for the accuracies in the report.")
+@click.option("--test-masks", type=folder, help="Masks of --test-images.")
+@click.option("--max-luts", type=click.IntRange(min=0), help="Fail if the target takes more LUTs.")
+@json_option
+def compile_command(
+    model: Path,
+    output: Path,
+    max_luts: int | None,
+    test_images: Path | None,
+    test_masks: Path | None,
+    as_json: bool,
+    **choices: Any,
+) -> None:
+    """Compile MODEL to Verilog, prove that it equals the model, and count its LUTs."""
+    options = CompileOptions(care_minimum=choices.pop("care_min"), **choices)
+    if (test_images is None) != (test_masks is None):
+        raise InputError(
+            "these options go together", value="--test-images and --test-masks", mend="give both"
+        )
+    test_set = from_masks(test_images, test_masks) if test_images and test_masks else None
+    with progress() as report:
+        build = compile_model(WisardModel.load(model), output, options, report, test_set)
+    emit(build.report, parts_table(build.report, build.folder), as_json=as_json)
+    if build.failure is not None:
+        raise CheckError("the circuit is not the model", value=build.failure, mend=f"see {build.folder}")
+    if max_luts is not None:
+        require_luts(build, max_luts)

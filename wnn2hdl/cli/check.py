@@ -1,0 +1,102 @@
+"""`verify`, `simulate` and `synth`: what a build folder says, done again."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import get_args
+
+import click
+import numpy as np
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import file, folder
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.errors import CheckError
+from wnn2hdl.images import write_png
+from wnn2hdl.ir.files import make_folder
+from wnn2hdl.pipeline.checking import synthesise_parts
+from wnn2hdl.pipeline.playback import SimulatorName, play
+from wnn2hdl.pipeline.verification import open_build, verify_build
+
+build_argument = click.argument("build", type=folder)
+
+
+@app.command("verify")
+@build_argument
+@json_option
+def verify_command(build: Path, as_json: bool) -> None:
+    """Check BUILD from its files alone: hashes, simulation, proof, LUT counts."""
+    with progress() as report:
+        problems, checked = verify_build(build, report)
+    data = {
+        "build": str(build),
+        "verified": not problems,
+        "problems": problems,
+        "proof": None
+        if checked is None
+        else {"status": checked.status, "method": checked.method, "seconds": checked.proof_seconds},
+        "vectors": {} if checked is None else dict(checked.vectors),
+    }
+    text = f"{build}: files unchanged, simulated, proved, counted" if not problems else "\n".join(problems)
+    emit(data, text, as_json=as_json)
+    if problems:
+        raise CheckError(f"{build} is not as it was built", value=problems[0])
+
+
+@app.command("simulate")
+@build_argument
+@click.option("--image", type=file, required=True, help="The picture to run over.")
+@click.option(
+    "--simulator", type=click.Choice(get_args(SimulatorName)), default="amaranth", show_default=True
+)
+@click.option("--vcd", type=file, help="Record the waves of the first windows (Amaranth's simulator).")
+@click.option("-o", "output", type=folder, help="Folder for the pictures.  [default: BUILD/simulation]")
+@json_option
+def simulate_command(
+    build: Path, image: Path, simulator: SimulatorName, vcd: Path | None, output: Path | None, as_json: bool
+) -> None:
+    """Run the block of BUILD over every 3x3 window of a picture and compare each output bit."""
+    with progress() as report:
+        result = play(build, image, simulator, report, vcd)
+    output = output or build / "simulation"
+    make_folder(output)
+    pictures = {"class": result.foreground, "edge": result.edges}
+    for name, flags in pictures.items():
+        write_png(output / f"{image.stem}-{name}.png", flags)
+    rate = result.windows / result.seconds
+    data = {
+        "image": str(image),
+        "simulator": simulator,
+        "windows": result.windows,
+        "seconds": result.seconds,
+        "windows_per_second": rate,
+        "cared": result.cared,
+        "foreground": float(np.mean(result.foreground)),
+        "pictures": [str(output / f"{image.stem}-{name}.png") for name in pictures],
+    }
+    text = (
+        f"{image}: {result.windows:,} windows in {result.seconds:.1f} s ({rate:,.0f} a second), all bits "
+        f"as they should be; {result.cared:.2%} of the pixels have a code that the circuit is proved on\n"
+        f"pictures in {output}"
+    )
+    emit(data, text, as_json=as_json)
+
+
+@app.command("synth")
+@build_argument
+@json_option
+def synth_command(build: Path, as_json: bool) -> None:
+    """Count the LUTs of BUILD again, from its Verilog."""
+    design, circuits, _ = open_build(build)
+    with progress() as report:
+        syntheses = synthesise_parts(design, circuits, report)
+    parts = {part: asdict(result.resources) for part, result in syntheses.items()}
+    first = next(iter(syntheses.values()))
+    data = {
+        "build": str(build),
+        "parts": parts,
+        "tool": first.tool,
+        "version": first.version,
+        "options": first.options,
+    }
+    lines = [f"{part}: {figures['luts']} LUTs, {figures['delay_ps']} ps" for part, figures in parts.items()]
+    emit(data, "\n".join([f"{first.tool} {first.version}, {first.options}", *lines]), as_json=as_json)

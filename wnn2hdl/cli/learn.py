@@ -1,0 +1,201 @@
+"""`train` and `evaluate`: models from labelled images, and how good they are on others."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import (
+    BleachingType,
+    file,
+    folder,
+    images_option,
+    labelled,
+    masks_option,
+    seed_option,
+)
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.dataset import Dataset
+from wnn2hdl.encode import high_bits, parse_bits
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import WisardModel
+from wnn2hdl.pipeline.budget import Point, measure, pareto_front, train_under_budget
+from wnn2hdl.pipeline.evaluation import circuit_answers, evaluate
+from wnn2hdl.pipeline.training import Progress, pixel_encoder, train
+from wnn2hdl.pipeline.verification import open_build
+from wnn2hdl.report.plots import plot_pareto
+
+
+@dataclass(frozen=True)
+class Discriminators:
+    """Options that fix the discriminators; None where the option was left out."""
+
+    bits: str | None
+    address_bits: int | None
+    rams: int | None
+    bleach: int | str | None
+
+    def train(self, dataset: Dataset, seed: int, report: Progress) -> WisardModel:
+        """Train with these options, or the reference design's where they were left out."""
+        return train(
+            dataset,
+            parse_bits(self.bits) if self.bits else high_bits(),
+            address_bits=self.address_bits or 4,
+            rams=self.rams or 16,
+            bleaching=self.bleach if isinstance(self.bleach, int) else None,
+            seed=seed,
+            progress=report,
+        )
+
+    def require_none(self, because: str) -> None:
+        """Refuse options that would have no effect."""
+        given = [f"--{name.replace('_', '-')}" for name, value in vars(self).items() if value is not None]
+        if given:
+            raise InputError(
+                f"{because} chooses the classifier itself",
+                value=" ".join(given),
+                mend="leave these options out",
+            )
+
+
+@app.command("train")
+@images_option
+@masks_option
+@click.option("--regions", type=file, help="CSV of labelled rectangles: chip,label,x,y,width,height.")
+@click.option("--chips", type=folder, help="Folder of the chips that --regions names.")
+@click.option("--bits", metavar="R7,R6,…", help="Pixel bits to read.  [default: the 4 high bits of R, G, B]")
+@click.option("--address-bits", type=click.IntRange(1, 20), help="n, address bits of a RAM.  [default: 4]")
+@click.option("--rams", type=click.IntRange(min=1), help="k, RAMs of a discriminator.  [default: 16]")
+@click.option(
+    "--bleach",
+    type=BleachingType(),
+    help="Bleaching threshold; auto: cross-validated by image.  [default: auto]",
+)
+@click.option(
+    "--max-luts", type=click.IntRange(min=1), help="The most accurate classifier of so many LUTs a pixel."
+)
+@click.option(
+    "--pareto", is_flag=True, help="The front of accuracy against LUTs, a model each, and its plot."
+)
+@click.option(
+    "--trials",
+    type=click.IntRange(min=0),
+    default=20,
+    show_default=True,
+    help="Random mappings that --max-luts and --pareto try.",
+)
+@seed_option
+@click.option("-o", "output", type=file, required=True, help="The model file to write.")
+@json_option
+def train_command(
+    images: Path | None,
+    masks: Path | None,
+    regions: Path | None,
+    chips: Path | None,
+    max_luts: int | None,
+    pareto: bool,
+    trials: int,
+    seed: int,
+    output: Path,
+    as_json: bool,
+    **discriminators: Any,
+) -> None:
+    """Train a pixel classifier on labelled images; on embedded landscapes if none are given."""
+    dataset = labelled(images, masks, regions, chips, seed)
+    options = Discriminators(**discriminators)
+    points: tuple[Point, ...] = ()
+    with progress() as report:
+        if pareto:
+            options.require_none("--pareto")
+            points = measure(dataset, trials=trials, seed=seed, progress=report, max_luts=max_luts)
+            model = max(pareto_front(points), key=lambda point: point.accuracy).model
+        elif max_luts is not None:
+            options.require_none("--max-luts")
+            model = train_under_budget(dataset, max_luts, trials=trials, seed=seed, progress=report)
+        else:
+            model = options.train(dataset, seed, report)
+    model.save(output)
+    summary = _summary(model, output, len(dataset))
+    if pareto:
+        summary["front"] = _save_front(points, output)
+    emit(summary, _sentence(summary), as_json=as_json)
+
+
+@app.command("evaluate")
+@click.argument("model", type=click.Path(exists=True, path_type=Path))
+@images_option
+@masks_option
+@seed_option
+@json_option
+def evaluate_command(model: Path, images: Path | None, masks: Path | None, seed: int, as_json: bool) -> None:
+    """Measure MODEL, a model file or a build folder (then its circuit), on labelled images."""
+    if model.is_dir():
+        design, _, _ = open_build(model)
+        trained, answers = design.model, circuit_answers(design.pixel)
+    else:
+        trained = WisardModel.load(model)
+        answers = trained.evaluate_all_codes()
+    dataset = labelled(images, masks, None, None, seed)
+    with progress() as report:
+        result = evaluate(answers, pixel_encoder(trained), dataset, report)
+    data = {
+        "model": str(model),
+        "accuracy": result.accuracy,
+        "images": len(dataset),
+        "accuracies": result.accuracies,
+        "classes": list(dataset.classes),
+        "confusion": result.confusion.sum(axis=0).tolist(),
+    }
+    text = f"{model}: {result.accuracy:.2%} of the pixels of {len(dataset)} images are right"
+    emit(data, text, as_json=as_json)
+
+
+def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
+    saturation = model.saturation
+    return {
+        "model": str(output),
+        "classes": list(model.classes),
+        "address_bits": model.address_bits,
+        "rams": model.rams,
+        "bits": list(pixel_encoder(model).bits),
+        "bleaching": model.bleaching,
+        "images": images,
+        "saturation": {"mean": float(saturation.mean()), "highest": float(saturation.max())},
+        "training": model.training,
+    }
+
+
+def _sentence(summary: dict[str, Any]) -> str:
+    saturation = summary["saturation"]
+    lines = [
+        f"{summary['model']}: {' / '.join(summary['classes'])}, {summary['rams']} RAMs of "
+        f"{summary['address_bits']} address bits over {','.join(summary['bits'])}",
+        f"bleaching threshold {summary['bleaching']}, trained on {summary['images']} images; "
+        f"RAMs {saturation['mean']:.0%} set, {saturation['highest']:.0%} at most",
+    ]
+    lines += [
+        f"{point['luts']} LUTs a pixel: {point['accuracy']:.2%} in cross-validation by image, "
+        f"{point['method']}, {point['model']}"
+        for point in summary.get("front", ())
+    ]
+    return "\n".join(lines)
+
+
+def _save_front(points: tuple[Point, ...], output: Path) -> list[dict[str, Any]]:
+    """Write a model for each point of the front, and the plot, beside the best model."""
+    front = pareto_front(points)
+    rows = []
+    for point in front:
+        path = output.with_name(f"{output.stem}-{point.luts}luts.json")
+        point.model.save(path)
+        rows.append(
+            {"luts": point.luts, "accuracy": point.accuracy, "method": point.method, "model": str(path)}
+        )
+    plot_pareto(
+        [(point.luts, point.accuracy, point.method) for point in points],
+        [(point.luts, point.accuracy, point.method) for point in front],
+        output.with_name(f"{output.stem}-pareto"),
+    )
+    return rows

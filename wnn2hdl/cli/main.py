@@ -1,0 +1,43 @@
+"""The `wnn2hdl` command: turns errors into one line and an exit status."""
+
+import signal
+import sys
+
+import click
+
+import wnn2hdl
+from wnn2hdl.errors import Wnn2hdlError
+
+INTERRUPTED = 128 + signal.SIGINT
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(wnn2hdl.__version__, prog_name="wnn2hdl")
+def app() -> None:
+    """Compile trained weightless neural networks to minimal, proved FPGA logic."""
+
+
+def main() -> int:
+    """Run the command line.
+
+    Returns:
+        0 done; 1 a check or gate failed; 2 bad usage, bad input or a missing tool; 130 interrupted.
+    """
+    try:
+        status = app(standalone_mode=False)
+    except Wnn2hdlError as error:
+        return _complain(error.line(), error.exit_status)
+    except click.ClickException as error:
+        return _complain(error.format_message(), error.exit_code)
+    except (KeyboardInterrupt, click.Abort):
+        return _complain("interrupted; nothing half-written was left", INTERRUPTED)
+    except BrokenPipeError:
+        # The reader of our output went away, as `| head` does; closing stops Python's own complaint at exit.
+        sys.stderr.close()
+        return 0
+    return status if isinstance(status, int) else 0
+
+
+def _complain(line: str, status: int) -> int:
+    click.echo(f"wnn2hdl: {' '.join(line.split())}", err=True)
+    return status

@@ -1,0 +1,58 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
+from wnn2hdl.errors import InputError
+
+SAMPLE_IMAGES = 12
+SAMPLE_SIDE = 256
+"""The embedded default: this many landscapes of this many pixels squared."""
+
+folder = click.Path(file_okay=False, path_type=Path)
+file = click.Path(dir_okay=False, path_type=Path)
+
+images_option = click.option("--images", type=folder, help="Folder of pictures; needs --masks.")
+masks_option = click.option(
+    "--masks", type=folder, help="Folder of masks of the same stems: 0 forest, else deforested."
+)
+seed_option = click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed.")
+
+
+class BleachingType(click.ParamType[int | str]):
+    """``auto`` or a threshold of at least 1."""
+
+    name = "auto|INT"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int | str:
+        """The threshold, or ``auto``."""
+        if value == "auto":
+            return "auto"
+        if not str(value).isdecimal() or int(value) < 1:
+            self.fail(f"{value!r} is neither 'auto' nor a whole number of at least 1", param, ctx)
+        return int(value)
+
+
+def labelled(
+    images: Path | None, masks: Path | None, regions: Path | None, chips: Path | None, seed: int
+) -> Dataset:
+    """The labelled images that the options name; the embedded landscapes if they name none.
+
+    Raises:
+        InputError: half of a pair of options, or both pairs.
+    """
+    pairs = {"--images and --masks": (images, masks), "--regions and --chips": (regions, chips)}
+    given = [name for name, pair in pairs.items() if any(pair)]
+    for name in given:
+        if not all(pairs[name]):
+            raise InputError("these options go together", value=name, mend="give both")
+    if len(given) == 2:
+        raise InputError("two sources of labelled pixels", value=" / ".join(given), mend="give one of them")
+    if images and masks:
+        return from_masks(images, masks)
+    if regions and chips:
+        return from_regions(regions, chips, seed=seed)
+    return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed)

@@ -1,0 +1,123 @@
+"""A testbench that checks itself against the model's answers, in plain Verilog-2001."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from amaranth.lib.wiring import Component
+from numpy.typing import NDArray
+
+from hdl_templates.vectors import pack, port_widths
+
+Arrays = Mapping[str, NDArray[np.generic]]
+
+
+def vectors(component: Component, inputs: Arrays, expected: Arrays) -> str:
+    """The vectors of a testbench, in the format of ``$readmemh``: one hexadecimal number a line.
+
+    Args:
+        component: the circuit under test.
+        inputs: for each input port its values, as `hdl_templates.vectors.port_values` takes them.
+        expected: for each output port the model's answers.
+
+    Returns:
+        Lines with the ports side by side in the order of declaration, the first in the highest bits.
+
+    Raises:
+        ValueError: the arrays do not fit the ports.
+    """
+    packed_inputs, packed_outputs = pack(component, inputs, expected)
+    widths = {name: width for ports in port_widths(component) for name, width in ports.items()}
+    columns = [(widths[name], values) for name, values in (packed_inputs | packed_outputs).items()]
+    digits = -(-sum(widths.values()) // 4)
+    lines = []
+    for row in zip(*(values for _, values in columns), strict=True):
+        word = 0
+        for (width, _), value in zip(columns, row, strict=True):
+            word = word << width | value
+        lines.append(f"{word:0{digits}x}\n")
+    return "".join(lines)
+
+
+def testbench(
+    component: Component, *, name: str, count: int, vectors_file: str, sources: Sequence[str]
+) -> str:
+    """A self-checking testbench ``NAME_tb`` for the module ``NAME``.
+
+    It reads its vectors from the folder it is started in, prints ``PASS`` and their number, or ``FAIL`` with
+    the inputs, the actual and the expected outputs of the first mismatch (unknown bits are one) and stops. A
+    failing run ends with ``$stop``: a status other than 0 from Verilator's program and from ``vvp -N``; plain
+    ``vvp`` asks what to do. ``$fatal`` would need SystemVerilog.
+
+    Args:
+        component: the circuit under test, for its ports.
+        name: its module.
+        count: how many vectors the file holds.
+        vectors_file: name of the file with the `vectors`, without a folder.
+        sources: names of the Verilog files of the circuit, for the comment that tells how to run it.
+    """
+    inputs, outputs = port_widths(component)
+    total = sum(inputs.values()) + sum(outputs.values())
+    fields = _fields(inputs | outputs, total)
+    connections = ",\n".join(f"        .{port}({port})" for port in (*inputs, *outputs))
+    wires = "\n".join(
+        [f"    wire {_range(width)}{port} = vector[{fields[port]}];" for port, width in inputs.items()]
+        + [f"    wire {_range(width)}{port};" for port, width in outputs.items()]
+        + [
+            f"    wire {_range(width)}{port}_expected = vector[{fields[port]}];"
+            for port, width in outputs.items()
+        ]
+    )
+    differs = "\n                || ".join(f"{port} !== {port}_expected" for port in outputs)
+    shown = "\n".join(
+        [f'                $display("  {port} = %h", {port});' for port in inputs]
+        + [
+            f'                $display("  {port} = %h, expected %h", {port}, {port}_expected);'
+            for port in outputs
+        ]
+    )
+    files = " ".join([*sources, f"{name}_tb.v"])
+    return f"""\
+// Checks {name} against {count} answers of the model; run it in this folder,
+// with Icarus:    iverilog -o {name}_tb {files} && vvp -N {name}_tb
+// with Verilator: verilator --binary --top-module {name}_tb {files} && obj_dir/V{name}_tb
+module {name}_tb;
+    reg [{total - 1}:0] vectors [0:{count - 1}];
+    reg [{total - 1}:0] vector;
+    integer i;
+{wires}
+
+    {name} dut (
+{connections}
+    );
+
+    initial begin
+        $readmemh("{vectors_file}", vectors);
+        for (i = 0; i < {count}; i = i + 1) begin
+            vector = vectors[i];
+            #1;
+            // A vector with unknown bits was not read: the file is missing or too short.
+            if (^vector === 1'bx
+                || {differs}) begin
+                $display("FAIL: {name}, vector %0d of {count}", i);
+{shown}
+                $stop;
+                $finish;
+            end
+        end
+        $display("PASS: {name}, {count} vectors");
+        $finish;
+    end
+endmodule
+"""
+
+
+def _fields(widths: Mapping[str, int], total: int) -> dict[str, str]:
+    fields, top = {}, total
+    for port, width in widths.items():
+        fields[port] = f"{top - 1}:{top - width}" if width > 1 else str(top - 1)
+        top -= width
+    return fields
+
+
+def _range(width: int) -> str:
+    return f"[{width - 1}:0] " if width > 1 else ""

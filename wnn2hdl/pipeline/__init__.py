@@ -1,0 +1,1 @@
+"""The one composer of stages: training, compiling, checking, evaluating."""

@@ -1,0 +1,60 @@
+"""Build folders: written beside their place, then renamed into it, so that a reader sees all or nothing."""
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.files import make_folder
+
+MANIFEST = "manifest.json"
+"""The file that tells a build folder of ours from any other folder."""
+
+REPORT_FILE = "report.json"
+REPORT_PAGE = "report.md"
+
+FAILED = "FAILED"
+"""The file that marks a build whose circuit is not the model; it says why."""
+
+
+@contextmanager
+def staged(target: Path) -> Iterator[Path]:
+    """A new folder that takes the place of ``target`` when the block ends without an error.
+
+    Args:
+        target: the folder to make; an earlier build there is replaced.
+
+    Yields:
+        the folder to write into, beside ``target``; it is removed if the block fails or is interrupted.
+
+    Raises:
+        InputError: ``target`` is something other than a build or an empty folder, or cannot be written.
+    """
+    if target.exists() and not (target.is_dir() and (is_build(target) or not any(target.iterdir()))):
+        raise InputError(
+            "the output exists and is no earlier build", value=target, mend="choose another folder"
+        )
+    make_folder(target.parent)
+    try:
+        staging = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    except OSError as error:
+        raise InputError(
+            "cannot write into the folder",
+            value=f"{target.parent} ({error.strerror})",
+            mend="choose another output folder",
+        ) from error
+    try:
+        staging.chmod(0o755)
+        yield staging
+        if target.exists():
+            shutil.rmtree(target)
+        staging.rename(target)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+
+
+def is_build(folder: Path) -> bool:
+    """Whether a folder was written by `compile`."""
+    return (folder / MANIFEST).is_file()

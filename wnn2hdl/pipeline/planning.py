@@ -1,0 +1,118 @@
+"""From a model and the user's choices to a design: care sets, edge filter, minimised networks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from wnn2hdl.edges import boundary, from_file, half_plane
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel
+from wnn2hdl.minimise import Minimised, espresso, map_luts
+from wnn2hdl.pipeline.design import Design, Mode, Style, Target, tables
+from wnn2hdl.pipeline.imagery import learn_edges, survey
+from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.tables import care_set
+from wnn2hdl.verify.specification import Specification
+
+
+@dataclass(frozen=True)
+class CompileOptions:
+    """The user's choices.
+
+    Attributes:
+        target: which circuit is the top of the Verilog.
+        mode: equal to the model on every input, or on the care set.
+        care: folder of the imagery that makes the care set; needed in domain mode.
+        care_minimum: how often a code must occur in it to be cared for.
+        edges: ``boundary``, ``half-plane``, ``learned`` or the path of a file of patterns.
+        edge_images: folder of the imagery from which patterns are learned; `care` if left out.
+        edge_patterns: how many patterns are learned.
+        edge_luts: learn only patterns that fit so many LUTs, 1 to 3; None sets no limit.
+        style: equations or explicit LUT cells.
+        effort: 0 to 3, how long to look for a smaller circuit.
+        sobel_threshold: the baseline's, 1 to 2040.
+    """
+
+    target: Target = "block"
+    mode: Mode = "exact"
+    care: Path | None = None
+    care_minimum: int = 1
+    edges: str = "boundary"
+    edge_images: Path | None = None
+    edge_patterns: int = 75
+    edge_luts: int | None = None
+    style: Style = "luts"
+    effort: int = 1
+    sobel_threshold: int = 128
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A design and what was found on the way.
+
+    Attributes:
+        design: the design.
+        covers: the two-level covers of the pixel classifier and the edge filter, for the report.
+        methods: how each network was found.
+    """
+
+    design: Design
+    covers: dict[str, Minimised]
+    methods: dict[str, str]
+
+
+def plan(model: WisardModel, options: CompileOptions, progress: Progress) -> Plan:
+    """Decide everything about a circuit but its text.
+
+    Raises:
+        InputError: the model reads no pixels, or imagery is needed and missing or unusable.
+        CheckError: a minimised table differs from the model.
+    """
+    specification = _specify(model, options, progress)
+    covers: dict[str, Minimised] = {}
+    methods: dict[str, str] = {}
+    networks = []
+    for name, table in zip(("pixel", "edge"), tables(specification), strict=True):
+        progress(f"minimising {name}", 0, 2)
+        covers[name] = espresso(table)
+        progress(f"minimising {name}", 1, 2)
+        mapping = map_luts(table, effort=options.effort)
+        methods[name] = mapping.method
+        networks.append(mapping.network)
+        progress(f"minimising {name}", 2, 2)
+    design = Design(specification, options.mode, options.target, options.style, *networks)
+    return Plan(design, covers, methods)
+
+
+def _specify(model: WisardModel, options: CompileOptions, progress: Progress) -> Specification:
+    edge_filter = _edge_filter(model, options, progress)
+    if options.mode == "exact":
+        return Specification.exact(model, edge_filter)
+    if options.care is None:
+        raise InputError(
+            "domain mode needs imagery that tells which codes occur", mend="give a folder with --care"
+        )
+    seen = survey(model, options.care, progress)
+    windows = seen.windows if seen.windows.any() else np.ones(WINDOW_CODES, dtype=np.int64)
+    return Specification(
+        model,
+        edge_filter,
+        care_set(seen.codes, options.care_minimum),
+        care_set(windows, min(options.care_minimum, int(windows.max()))),
+    )
+
+
+def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress) -> EdgeFilter:
+    if options.edges == "boundary":
+        return boundary()
+    if options.edges == "half-plane":
+        return half_plane()
+    if options.edges == "learned":
+        folder = options.edge_images or options.care
+        if folder is None:
+            raise InputError(
+                "learned edge patterns need imagery to learn from", mend="give a folder with --edge-images"
+            )
+        return learn_edges(model, folder, options.edge_patterns, options.edge_luts, progress)
+    return from_file(Path(options.edges))

@@ -1,0 +1,99 @@
+"""From labelled images to a trained model."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.dataset import Dataset, LabelledImage
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import MAX_TABLE_INPUTS, BitSelect, WisardModel
+from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
+
+Progress = Callable[[str, int, int], None]
+"""``report(step, done, total)``: what is being done and how far it is."""
+
+
+def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
+    """How often each code occurs, by image and class: int64 ``[images, classes, 2**width]``.
+
+    One image is in memory at a time; the cost grows with the pixels.
+
+    Raises:
+        InputError: the encoder is too wide for a table, an image cannot be read, or a class has no pixel.
+    """
+    if encoder.width > MAX_TABLE_INPUTS:
+        raise InputError(
+            "too many input bits for one truth table",
+            value=encoder.width,
+            mend=f"choose at most {MAX_TABLE_INPUTS}",
+        )
+    shape = (len(dataset.classes), 1 << encoder.width)
+    histograms = np.zeros((len(dataset), *shape), dtype=np.int64)
+    for position, image in enumerate(dataset):
+        histograms[position] = _histogram(image, encoder, shape)
+        progress("reading images", position + 1, len(dataset))
+    for name, pixels in zip(dataset.classes, histograms.sum(axis=(0, 2)), strict=True):
+        if pixels == 0:
+            raise InputError(
+                f"no training pixel is labelled {name}",
+                value=f"{len(dataset)} images",
+                mend="add images that show every class",
+            )
+    return histograms
+
+
+def train(
+    dataset: Dataset,
+    encoder: BitSelect,
+    *,
+    address_bits: int,
+    rams: int,
+    bleaching: int | None,
+    seed: int,
+    progress: Progress,
+) -> WisardModel:
+    """Train RAM discriminators on a data set.
+
+    Args:
+        dataset: the training images.
+        encoder: which pixel bits the network reads.
+        address_bits: n, address bits of a RAM.
+        rams: k, RAMs of a discriminator.
+        bleaching: the threshold; None chooses it by cross-validation by image, on these images alone.
+        seed: of the tuple mapping.
+        progress: told of each image read.
+
+    Raises:
+        InputError: the images cannot be used, or n does not fit the encoder.
+    """
+    mapping = draw_mapping(encoder.width, rams, address_bits, seed)
+    histograms = image_histograms(dataset, encoder, progress)
+    threshold = choose_bleaching(histograms, mapping) if bleaching is None else bleaching
+    training = {
+        "seed": seed,
+        "images": list(dataset.names),
+        "pixels": int(histograms.sum()),
+        "bleaching": "auto" if bleaching is None else "given",
+    }
+    return train_histogram(histograms.sum(axis=0), encoder, dataset.classes, mapping, threshold, training)
+
+
+def _histogram(image: LabelledImage, encoder: BitSelect, shape: tuple[int, int]) -> NDArray[np.int64]:
+    cells = image.labels.astype(np.int64) * shape[1] + encoder.codes(image.pixels)
+    return np.bincount(cells, minlength=shape[0] * shape[1]).reshape(shape)
+
+
+def pixel_encoder(model: WisardModel) -> BitSelect:
+    """The encoder of a model of pixels.
+
+    Raises:
+        InputError: the model reads features, not the bits of a pixel.
+    """
+    if not isinstance(model.encoder, BitSelect):
+        raise InputError(
+            "the model does not read pixels",
+            value=f"its encoder is of kind {model.encoder.kind}",
+            mend="use one that was trained on images",
+        )
+    return model.encoder

@@ -1,0 +1,64 @@
+"""Checking a build again, from its files alone."""
+
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.emit import check as check_manifest
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.files import read_json
+from wnn2hdl.pipeline.checking import Checked, check
+from wnn2hdl.pipeline.circuits import Circuits, circuits_of
+from wnn2hdl.pipeline.design import Design
+from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, is_build
+from wnn2hdl.pipeline.training import Progress
+
+
+def open_build(folder: Path) -> tuple[Design, Circuits, dict[str, Any]]:
+    """A build's design, files and report.
+
+    Raises:
+        InputError: the folder is no build.
+        ModelFileError: one of its files is missing or damaged.
+    """
+    if not is_build(folder):
+        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")
+    design = Design.load(folder)
+    return design, circuits_of(design, folder), read_json(folder / REPORT_FILE, "a report")
+
+
+def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked | None]:
+    """Hashes, simulation, proof and count of a build, all done again.
+
+    Args:
+        folder: the build folder.
+        progress: told of every stage.
+
+    Returns:
+        What is wrong, one line each, empty if nothing is; and what the checks found, None where files are
+        missing or changed so that there is nothing sound to check.
+
+    Raises:
+        InputError: the folder is no build.
+        ToolError: an outside program is missing or failed.
+    """
+    if not is_build(folder):
+        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")
+    problems = check_manifest(folder)
+    progress("checking hashes", 1, 1)
+    if any("missing" in problem for problem in problems):
+        return problems, None
+    design, circuits, report = open_build(folder)
+    if (folder / FAILED).exists():
+        problems.append("the build is marked as failed")
+    if report.get("hashes", {}).get("model") != design.model.digest():
+        problems.append(f"{REPORT_FILE} belongs to a build of another model")
+    checked = check(design, circuits, progress)
+    if checked.failure is not None:
+        problems.append(checked.failure)
+    for part, result in checked.syntheses.items():
+        told = report.get("parts", {}).get(part, {}).get("luts")
+        if told != result.resources.luts:
+            problems.append(
+                f"{REPORT_FILE} says that {part} takes {told} LUTs; it takes {result.resources.luts}"
+            )
+    return problems, checked

@@ -1,0 +1,1 @@
+"""Proof and simulation of what was emitted."""

@@ -1,0 +1,191 @@
+"""Are two combinational Verilog modules equal on every input? Yosys reads them, ABC decides.
+
+Yosys turns each module into an and-inverter graph (AIGER) by ``proc``, ``techmap``, ``aigmap`` and
+``flatten``; ABC builds the miter of two graphs and runs its combinational equivalence checker ``&cec`` on it:
+it simulates, guesses internal equivalences, proves or refutes each by SAT, merges, and ends with the outputs.
+An answer of "undecided" is an error here, never a yes.
+
+What is not a function of the inputs is refused: undriven, doubly driven and looped wires by ``check
+-assert``, registers by their count in the graph, latches by Yosys's AIGER writer; and each ``x`` is made a
+free input (``setundef -anyseq``), which shows in the graph's count of inputs.
+"""
+
+import re
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from wnn2hdl.errors import CheckError, ToolError
+from wnn2hdl.tools import find_yosys, run_abc
+
+_PRIMITIVE = re.compile(r"\b(LUT[1-6]|LUT6_2|MUXF[78]|CARRY4|INV)\b")
+_VERDICT = re.compile(r"Networks are (equivalent|NOT EQUIVALENT|UNDECIDED)")
+_PORT_BIT = re.compile(r"^(input|output) (\d+) (\d+) (\S+)$", re.MULTILINE)
+_ANSWER = re.compile(r"Eval result: \\(\w+) = \d+'([01x]+)\.")
+_EVALUATION_SECONDS = 60.0
+_CONFLICTS = 1_000_000
+"""SAT conflicts allowed at a node; ABC's own limit of 1000 leaves some equal circuits undecided."""
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """A combinational Verilog module.
+
+    Attributes:
+        sources: Verilog texts, read in this order; of two modules of one name the first counts. Cells of the
+            7-series library come before all: Yosys's models of them count, whatever a source defines.
+        top: the module.
+    """
+
+    sources: tuple[str, ...]
+    top: str
+
+
+@dataclass(frozen=True)
+class _Graph:
+    """The ports of an and-inverter graph.
+
+    Attributes:
+        inputs: port and bit of each input of the graph.
+        outputs: the same for its outputs; Yosys names none that is constant.
+        size: how many outputs there are.
+    """
+
+    inputs: dict[int, tuple[str, int]]
+    outputs: dict[int, tuple[str, int]]
+    size: int
+
+    def fits(self, other: "_Graph") -> bool:
+        """Whether inputs and outputs of the same place belong to the same port."""
+        named_by_both = self.outputs.keys() & other.outputs.keys()
+        return (
+            self.inputs == other.inputs
+            and self.size == other.size
+            and all(self.outputs[place] == other.outputs[place] for place in named_by_both)
+        )
+
+
+def find_differences(
+    pairs: Sequence[tuple[Circuit, Circuit]], *, timeout: float
+) -> list[dict[str, int] | None]:
+    """For each pair, an input on which the two circuits differ.
+
+    All pairs share one process of Yosys and one of ABC, and each circuit is read once.
+
+    Args:
+        pairs: circuits with equal ports.
+        timeout: seconds for each of the two processes.
+
+    Returns:
+        For each pair the values of the input ports, or None where the circuits are equal on every input.
+
+    Raises:
+        CheckError: a circuit has registers or reads undefined values: it is no function of its inputs.
+        ToolError: Yosys cannot read a circuit, the ports differ, or a tool gave up.
+    """
+    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
+        folder = Path(name)
+        circuits = list(dict.fromkeys(circuit for pair in pairs for circuit in pair))
+        graphs = dict(zip(circuits, _write_graphs(circuits, folder, timeout), strict=True))
+        numbers = {circuit: number for number, circuit in enumerate(circuits)}
+        script = []
+        for number, (left, right) in enumerate(pairs):
+            if not graphs[left].fits(graphs[right]):
+                raise ToolError("two circuits to compare have different ports", value=(left.top, right.top))
+            # -n: by place, not by name, so that the counterexample's bits stand in the inputs' order.
+            script.append(f"miter -n {numbers[left]}.aig {numbers[right]}.aig; &get; &cec -m -C {_CONFLICTS}")
+            script.append(f"write_cex {number}.cex")
+        verdicts = _VERDICT.findall(run_abc("\n".join(script) + "\n", timeout=timeout, cwd=folder))
+        if len(verdicts) != len(pairs) or "UNDECIDED" in verdicts:
+            raise ToolError("ABC could not decide whether two circuits are equal", value=verdicts)
+        return [
+            None if verdict == "equivalent" else _read_counterexample(folder / f"{number}.cex", graphs[left])
+            for number, (verdict, (left, _)) in enumerate(zip(verdicts, pairs, strict=True))
+        ]
+
+
+def evaluate(
+    circuit: Circuit, inputs: dict[str, int], widths: dict[str, int], outputs: Sequence[str]
+) -> dict[str, int]:
+    """What a circuit answers on one input, by Yosys's constant evaluation of its Verilog.
+
+    Args:
+        circuit: the circuit.
+        inputs: values of the input ports.
+        widths: widths of the input ports, in bits.
+        outputs: names of the output ports wanted.
+
+    Raises:
+        ToolError: Yosys cannot read the circuit, or an output is undefined.
+    """
+    settings = " ".join(f"-set {port} {widths[port]}'h{value:x}" for port, value in inputs.items())
+    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
+        folder = Path(name)
+        script = [*_read_cells([circuit]), *_read(circuit, 0, folder), "flatten", "opt_clean"]
+        script.append(f"eval {settings} " + " ".join(f"-show {port}" for port in outputs))
+        log = find_yosys().run("\n".join(script) + "\n", timeout=_EVALUATION_SECONDS, cwd=folder)
+    answers = {port: bits for port, bits in _ANSWER.findall(log) if port in outputs}
+    if len(answers) != len(outputs) or any("x" in bits for bits in answers.values()):
+        raise ToolError("Yosys cannot evaluate the circuit", value=circuit.top, output=log)
+    return {port: int(answers[port], 2) for port in outputs}
+
+
+def _write_graphs(circuits: Sequence[Circuit], folder: Path, timeout: float) -> list[_Graph]:
+    """Write the graph of circuit ``i`` to ``i.aig``; return their ports."""
+    script = _read_cells(circuits)
+    for number, circuit in enumerate(circuits):
+        script += _read(circuit, number, folder)
+        # Mapping each module once, before it is flattened into its nine instances, is what makes this quick.
+        script += ["check -assert", "setundef -anyseq", "opt_expr", "techmap", "opt_expr", "aigmap"]
+        script += ["opt_clean", "rename -hide", "flatten -noscopeinfo"]
+        script += [f"write_aiger -map {number}.map {number}.aig"]
+    find_yosys().run("\n".join(script) + "\n", timeout=timeout, cwd=folder)
+    return [
+        _checked(folder / f"{number}.aig", folder / f"{number}.map", circuit)
+        for number, circuit in enumerate(circuits)
+    ]
+
+
+def _read(circuit: Circuit, number: int, folder: Path) -> list[str]:
+    """Write the sources and return the commands that read them into an empty design."""
+    script = ["design -reset", *(f"design -copy-from cells {cell}" for cell in sorted(_cells(circuit)))]
+    for position, text in enumerate(circuit.sources):
+        name = f"{number}_{position}.v"
+        (folder / name).write_text(text, encoding="utf-8")
+        script.append(f"read_verilog -nooverwrite {name}")
+    # A module that asks a synthesiser to keep it would not be flattened.
+    return [*script, f"hierarchy -check -top {circuit.top}", "setattr -mod -unset keep_hierarchy *", "proc"]
+
+
+def _read_cells(circuits: Sequence[Circuit]) -> list[str]:
+    """Commands that keep the models of 7-series cells at hand, where there is need of them."""
+    needed = any(_cells(circuit) for circuit in circuits)
+    return ["read_verilog +/xilinx/cells_sim.v", "design -stash cells"] if needed else []
+
+
+def _cells(circuit: Circuit) -> set[str]:
+    """Names of the 7-series cells that a circuit mentions."""
+    return {cell for source in circuit.sources for cell in _PRIMITIVE.findall(source)}
+
+
+def _checked(graph: Path, ports: Path, circuit: Circuit) -> _Graph:
+    """Refuse a graph that is no function of the circuit's inputs (AIGER header: ``aig M I L O A``)."""
+    header = graph.read_bytes().split(b"\n", 1)[0].split()
+    inputs, registers, outputs = (int(field) for field in header[2:5])
+    named: dict[str, dict[int, tuple[str, int]]] = {"input": {}, "output": {}}
+    for direction, place, bit, port in _PORT_BIT.findall(ports.read_text(encoding="utf-8")):
+        named[direction][int(place)] = (port, int(bit))
+    if registers:
+        raise CheckError("the circuit has registers, so it is not combinational", value=circuit.top)
+    if inputs != len(named["input"]):
+        raise CheckError("the circuit reads an undefined value (x)", value=circuit.top)
+    return _Graph(named["input"], named["output"], outputs)
+
+
+def _read_counterexample(path: Path, graph: _Graph) -> dict[str, int]:
+    bits = path.read_text(encoding="utf-8")
+    values: dict[str, int] = {}
+    for place, (port, bit) in graph.inputs.items():
+        values[port] = values.get(port, 0) | int(bits[place]) << bit
+    return values

@@ -1,0 +1,148 @@
+"""Simulation of a component in Amaranth's simulator, compared with the model's answers vector by vector."""
+
+import time
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from amaranth.hdl import Cat
+from amaranth.lib.wiring import Component
+from amaranth.sim import Simulator
+from numpy.typing import NDArray
+
+from hdl_templates.vectors import pack, port_widths
+from wnn2hdl.errors import CheckError, InputError
+
+Arrays = Mapping[str, NDArray[np.generic]]
+Progress = Callable[[int, int], None]
+"""Called with the vectors done and their total."""
+
+Bench = Callable[[Any], Coroutine[Any, Any, None]]
+"""A testbench, as Amaranth's simulator calls it."""
+
+_REPORT_EVERY = 2048
+_PERIOD = 10e-9
+"""Seconds a vector takes in a recording."""
+
+
+@dataclass(frozen=True)
+class SimulationResult:
+    """A simulation without a mismatch: how many vectors, in how many seconds of wall-clock time."""
+
+    vectors: int
+    seconds: float
+
+    @property
+    def vectors_per_second(self) -> float:
+        """The simulator's speed."""
+        return self.vectors / self.seconds
+
+
+def simulate(
+    component: Component,
+    inputs: Arrays,
+    expected: Arrays,
+    *,
+    progress: Progress | None = None,
+    vcd: Path | None = None,
+    vcd_vectors: int = 256,
+) -> SimulationResult:
+    """Simulate a combinational component on all vectors and compare every output bit.
+
+    Latency is 0 cycles: each vector is applied, settles, and is compared.
+
+    Args:
+        component: the circuit, as yet unused.
+        inputs: for each input port its values, as `hdl_templates.vectors.port_values` takes them: integers
+            ``[vectors]``, or ``[vectors, words]``, least significant word first.
+        expected: for each output port the model's answers.
+        progress: called now and then.
+        vcd: where to record the waves of the first ``vcd_vectors`` vectors, 10 ns each; the recording ends at
+            a mismatch among them.
+        vcd_vectors: how many vectors are recorded.
+
+    Raises:
+        CheckError: an output differs from the model.
+        InputError: the waves cannot be written.
+        ValueError: the arrays do not fit the ports.
+    """
+    stimulus, answers = pack(component, inputs, expected)
+    total = len(next(iter(answers.values())))
+    started = time.perf_counter()
+    if vcd is not None:
+        _record(component, _bench(component, stimulus, answers, range(min(vcd_vectors, total)), _PERIOD), vcd)
+    simulator = Simulator(component)
+    simulator.add_testbench(_bench(component, stimulus, answers, range(total), None, progress))
+    simulator.run()
+    return SimulationResult(total, time.perf_counter() - started)
+
+
+def _bench(
+    component: Component,
+    stimulus: dict[str, list[int]],
+    answers: dict[str, list[int]],
+    vectors: range,
+    period: float | None,
+    progress: Progress | None = None,
+) -> Bench:
+    """A testbench that applies the vectors in turn, each for ``period`` seconds; without one, time stands."""
+    sources = [getattr(component, name) for name in stimulus]
+    offsets = [sum(len(port) for port in sources[:i]) for i in range(len(sources))]
+    everything = Cat(*sources)
+    sinks = [(name, getattr(component, name), values) for name, values in answers.items()]
+    rows = list(zip(*stimulus.values(), strict=True))
+
+    async def bench(ctx: Any) -> None:
+        last: tuple[int | None, ...] = (None,) * len(sources)
+        for i in vectors:
+            row = rows[i]
+            changed = [port for port, value in enumerate(row) if value != last[port]]
+            last = row
+            # `set` returns once all that depends on its ports has settled, so it is called once a vector.
+            if len(changed) == 1:
+                ctx.set(sources[changed[0]], row[changed[0]])
+            elif changed:
+                ctx.set(everything, sum(value << offset for value, offset in zip(row, offsets, strict=True)))
+            for name, port, values in sinks:
+                if ctx.get(port) != values[i]:
+                    inputs = {source: values[i] for source, values in stimulus.items()}
+                    raise _mismatch(component, i, inputs, name, values[i], ctx.get(port))
+            if period is not None:
+                await ctx.delay(period)
+            if progress and ((i + 1) % _REPORT_EVERY == 0 or i + 1 == len(vectors)):
+                progress(i + 1, len(vectors))
+
+    return bench
+
+
+def _record(component: Component, bench: Bench, path: Path) -> None:
+    try:
+        with path.open("w", encoding="utf-8") as stream:
+            simulator = Simulator(component)
+            simulator.add_testbench(bench)
+            with simulator.write_vcd(stream):
+                simulator.run()
+    except OSError as error:
+        raise InputError(
+            "cannot record the waves",
+            value=f"{path} ({error.strerror})",
+            mend="choose a folder you may write to",
+        ) from error
+
+
+def _mismatch(
+    component: Component, vector: int, inputs: dict[str, int], output: str, expected: int, got: int
+) -> CheckError:
+    inputs_widths, outputs_widths = port_widths(component)
+    applied = ", ".join(f"{name} = {_literal(value, inputs_widths[name])}" for name, value in inputs.items())
+    width = outputs_widths[output]
+    return CheckError(
+        f"the circuit differs from the model at vector {vector}",
+        value=f"{output} is {_literal(got, width)}, the model says {_literal(expected, width)}, at {applied}",
+    )
+
+
+def _literal(value: int, width: int) -> str:
+    return f"{width}'h{value:x}"
