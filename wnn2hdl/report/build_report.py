@@ -39,7 +39,7 @@ class PartFigures:
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a build; one that was not built has no figures. A block is nine pixels and an edge filter."""
+    """The parts of a build; one that was not built has no figures. A block is nine pixels and edge filter."""
 
     pixel: PartFigures = PartFigures()
     edge: PartFigures = PartFigures()

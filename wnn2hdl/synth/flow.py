@@ -18,7 +18,7 @@ OPTIONS = "synth_xilinx -family xc7 -flatten -noiopad"
 
 _TIMEOUT = 1800.0
 
-# Modules that keep their hierarchy are dissolved once they are mapped, since `sta` looks into one module only.
+# Modules that keep their hierarchy are dissolved once they are mapped: `sta` looks into one module only.
 # synth_xilinx takes the timing arcs of CARRY4 away, and `sta` then reports a path that ends before the carry
 # chain (measured, Yosys 0.70), so the cells are read again before it.
 _SCRIPT = f"""\

@@ -33,6 +33,7 @@ _BASES = {"h": 16, "b": 2, "d": 10}
 _MODULE = re.compile(r"^\s*module\s+(\\\S+|\w+)", re.MULTILINE)
 
 _SECONDS = 600.0
+_ATTEMPTS = 20
 
 
 @dataclass(frozen=True)
@@ -77,22 +78,24 @@ class MutationReport:
 
 
 def make_mutants(verilog: str, count: int, seed: int) -> list[Mutant]:
-    """Different mutants of a Verilog text, the same for the same seed: single faults, then pairs of them.
+    """Different mutants of a Verilog text, the same for the same seed: single faults, then several at once.
 
     Faults: a bit of a constant or of a LUT's contents flipped; an operand inverted, replaced by 0 or 1 (which
     drops a literal or a term), or exchanged with the next one of its expression.
 
     Args:
         verilog: the text; expressions stand in ``assign`` and at the inputs of LUT cells.
-        count: how many; none are returned if the text has nothing to change.
+        count: how many; fewer are returned if the text has no more in it.
         seed: of the random choice.
     """
     rng = np.random.default_rng(seed)
     mutants = list(_mutants_of(verilog, rng, count))
-    # A circuit of one LUT has few single faults; the rest are faults of faulty ones.
-    singles, known = tuple(mutants), {verilog, *(mutant.verilog for mutant in mutants)}
-    while singles and len(mutants) < count:
-        first = singles[rng.integers(len(singles))]
+    known = {verilog, *(mutant.verilog for mutant in mutants)}
+    # A circuit of one LUT has few single faults; what is missing are faults of faulty circuits.
+    for _ in range(_ATTEMPTS * count if mutants else 0):
+        if len(mutants) == count:
+            break
+        first = mutants[rng.integers(len(mutants))]
         for second in _mutants_of(first.verilog, rng, 1):
             if second.verilog not in known:
                 known.add(second.verilog)

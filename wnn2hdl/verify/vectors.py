@@ -14,9 +14,10 @@ def stimulus(specification: Specification, part: PartName, seed: int = 0) -> Sam
     """Inputs on which a circuit is checked by simulation; all of them are cared for.
 
     A pixel classifier gets every cared-for code, an edge filter every cared-for window, a matcher all 2**18
-    pairs of windows. A block gets `BLOCK_WINDOWS` windows: each cared-for binary window equally often, made of
-    random pixels of the classes it asks for; with a matcher, against a reference that is equal to it, differs in
-    one bit, is its complement, or is random. Bits of a pixel that the model does not read are random throughout.
+    pairs of windows. A block gets `BLOCK_WINDOWS` windows: each cared-for binary window equally often, made
+    of random pixels of the classes it asks for; with a matcher, against a reference that is equal to it,
+    differs in one bit, is its complement, or is random. Bits of a pixel that the model does not read are
+    random throughout.
 
     Args:
         specification: the model and its care sets.

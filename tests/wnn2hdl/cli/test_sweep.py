@@ -1,0 +1,126 @@
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from wnn2hdl.cli import main, sweep  # noqa: F401  # importing the module registers its command
+from wnn2hdl.dataset import from_samples
+from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.ir import WisardModel
+from wnn2hdl.sweep import PixelSets, answers_digest, draw
+from wnn2hdl.sweep import run_sweep as real_sweep
+from wnn2hdl.sweep.trial import run_trials
+
+GRID = ("--n", "3..4", "--k", "5..6", "--trials", "2")
+
+
+@pytest.fixture(scope="module")
+def sets() -> PixelSets:
+    """2,000 training pixels of four small landscapes."""
+    return draw(from_samples(4, 64, seed=3), pixels=2_000, seed=0, progress=lambda *_: None)
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sets: PixelSets) -> None:
+    """Few small landscapes, few finalist trials, one process, and a folder of its own."""
+
+    def quick(*arguments: Any, **options: Any) -> Any:
+        return real_sweep(*arguments, finalist_trials=3, **options)
+
+    monkeypatch.setattr("wnn2hdl.cli.sweep.draw", lambda *_, **__: sets)
+    monkeypatch.setattr("wnn2hdl.cli.sweep.run_sweep", quick)
+    monkeypatch.setattr(
+        "wnn2hdl.cli.sweep.run_locally", lambda sets, trials: iter([run_trials(sets, trials)])
+    )
+    monkeypatch.chdir(tmp_path)
+
+
+def run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
+) -> tuple[int, str, str]:
+    monkeypatch.setattr("sys.argv", ["wnn2hdl", "sweep", *arguments])
+    status = main()
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def test_json_tells_how_many_trials_there_were(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, _ = run(monkeypatch, capsys, *GRID, "-o", "out", "--json")
+    assert status == 0
+    assert json.loads(out)["trials"] == 8
+    assert len(Path("out/trials.csv").read_text().splitlines()) == 9
+
+
+def test_pictures_and_page_lie_in_the_folder(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    status, out, _ = run(monkeypatch, capsys, *GRID)
+    assert status == 0
+    assert out.startswith("build/sweep: 8 trials")
+    names = {path.name for path in Path("build/sweep").iterdir()}
+    assert {"index.html", "surface.svg", "surface.png", "pareto.svg", "finalists.png"} <= names
+
+
+def test_without_the_extra_the_tables_are_complete_and_a_line_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing(*_: object) -> None:
+        raise ExtraMissingError("pictures need Matplotlib", mend="install it")
+
+    monkeypatch.setattr("wnn2hdl.cli.sweep.draw_all", missing)
+    status, out, err = run(monkeypatch, capsys, *GRID, "--json")
+    assert status == 0
+    assert json.loads(out)["trials"] == 8
+    assert "wnn2hdl: pictures need Matplotlib; install it" in err
+
+
+def test_best_writes_the_model_of_the_best_trial_of_the_chosen_architecture(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(monkeypatch, capsys, *GRID, "-o", "out")
+    status, out, _ = run(monkeypatch, capsys, *GRID, "--results", "out", "--best", "-o", "m.json", "--json")
+    assert status == 0
+    best = json.loads(Path("out/summary.json").read_text())["best"]
+    assert json.loads(out)["name"] == best["name"]
+    assert answers_digest(WisardModel.load(Path("m.json"))) == best["answers"]
+
+
+def test_any_trial_is_rebuilt_without_a_sweep(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, _ = run(monkeypatch, capsys, "--trial", "n4-k16-t7", "-o", "m.json", "--json")
+    assert status == 0
+    model = WisardModel.load(Path("m.json"))
+    assert (model.address_bits, model.rams) == (4, 16)
+    assert answers_digest(model) == json.loads(out)["answers"]
+    assert not Path("build").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (("--best",), "there is no place for the model; name its file with -o MODEL.json"),
+        (("--best", "--trial", "n4-k16-t7", "-o", "m"), "--best and --trial name different models"),
+        (("--results", "out"), "--results goes with --best or --trial"),
+        (("--trial", "n4", "-o", "m.json"), "no such trial: 'n4'"),
+        (("--trial", "s3", "-o", "m.json"), "no such trial: 's3'; run the sweep with --search first"),
+        (("--n", "12..2"), "'12..2' is no range of numbers from 1 on, as in 2..12"),
+        (("--k", "0"), "'0' is no range of numbers"),
+    ],
+)
+def test_bad_options_are_one_line_and_status_2(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: tuple[str, ...],
+    complaint: str,
+) -> None:
+    status, out, err = run(monkeypatch, capsys, *arguments)
+    assert status == 2
+    assert out == ""
+    assert complaint in err
+    assert len(err.strip().splitlines()) == 1

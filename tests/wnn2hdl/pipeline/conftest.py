@@ -1,0 +1,59 @@
+"""A small model and a build of it, shared by the tests of the pipeline."""
+
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl.dataset import from_samples
+from wnn2hdl.encode import parse_bits
+from wnn2hdl.images import write_png
+from wnn2hdl.ir import WisardModel
+from wnn2hdl.pipeline.compile import compile_model
+from wnn2hdl.pipeline.planning import CompileOptions
+from wnn2hdl.pipeline.training import train
+from wnn2hdl.samples import landscape
+
+
+def silent(step: str, done: int, total: int) -> None:
+    """No progress is shown."""
+
+
+@pytest.fixture(scope="session")
+def model() -> WisardModel:
+    """Eight pixel bits, discriminators of six RAMs, trained on three small landscapes."""
+    return train(
+        from_samples(3, 64, seed=1),
+        parse_bits("R7,R6,R5,G7,G6,G5,B6,B5"),
+        address_bits=3,
+        rams=6,
+        bleaching=None,
+        seed=0,
+        progress=silent,
+    )
+
+
+@pytest.fixture(scope="session")
+def imagery(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of two landscapes."""
+    folder = tmp_path_factory.mktemp("imagery")
+    for seed in (7, 8):
+        write_png(folder / f"{seed}.png", landscape(64, 64, seed).image)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def build(model: WisardModel, imagery: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A block in domain mode, compiled once."""
+    folder = tmp_path_factory.mktemp("builds") / "block"
+    options = CompileOptions(mode="domain", care=imagery)
+    assert compile_model(model, folder, options, silent, from_samples(2, 64, seed=5)).failure is None
+    return folder
+
+
+@pytest.fixture(scope="session")
+def pixel_build(model: WisardModel, imagery: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A pixel in domain mode, compiled once: quicker to check again than a block."""
+    folder = tmp_path_factory.mktemp("builds") / "pixel"
+    options = CompileOptions(target="pixel", mode="domain", care=imagery)
+    assert compile_model(model, folder, options, silent).failure is None
+    return folder

@@ -1,0 +1,108 @@
+"""A compiled model: all files, proved, counted, or nothing."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl.errors import CheckError, InputError
+from wnn2hdl.ir import LutNetwork, WisardModel
+from wnn2hdl.pipeline.checking import Checked, check
+from wnn2hdl.pipeline.circuits import Circuits
+from wnn2hdl.pipeline.compile import Build, compile_model, require_luts
+from wnn2hdl.pipeline.design import Design
+from wnn2hdl.pipeline.planning import CompileOptions
+from wnn2hdl.pipeline.training import Progress
+
+pytestmark = pytest.mark.slow
+
+
+def silent(step: str, done: int, total: int) -> None:
+    pass
+
+
+def test_a_build_holds_everything_and_says_what_it_costs(build: Path) -> None:
+    assert {path.name for path in build.iterdir()} >= {
+        "block.v",
+        "block_match_tb.v",
+        "block_match_vectors.hex",
+        "design.json",
+        "manifest.json",
+        "model.json",
+        "report.json",
+        "report.md",
+        "sobel.v",
+    }
+    report = json.loads((build / "report.json").read_text())
+    assert report["proof"]["status"] == "proved"
+    assert report["mode"] == "domain"
+    parts = report["parts"]
+    assert parts["match"]["luts"] == 10
+    assert parts["match"]["carry4"] == 0
+    assert parts["block"]["luts"] == 9 * parts["pixel"]["luts"] + parts["edge"]["luts"]
+    assert parts["block"]["ffs"] == 0
+    assert parts["sobel"]["luts"] > parts["pixel"]["luts"]
+    assert 0.5 < report["accuracy"] <= 1
+    assert 0 < report["care"]["coverage"] <= 1
+    assert report["options"]["simulated_vectors"]["match"] == 2**18
+    assert report["options"]["simulated_vectors"]["block_match"] >= 10_000
+
+
+def test_the_same_inputs_give_the_same_bytes(
+    pixel_build: Path, model: WisardModel, imagery: Path, tmp_path: Path
+) -> None:
+    options = CompileOptions(target="pixel", mode="domain", care=imagery)
+    compile_model(model, tmp_path / "pixel", options, silent)
+    for name in ("pixel.v", "pixel_tb.v", "pixel_vectors.hex", "design.json", "sobel.v"):
+        assert (tmp_path / "pixel" / name).read_bytes() == (pixel_build / name).read_bytes()
+
+
+@pytest.mark.parametrize("style", ["rtl", "luts"])
+def test_a_pixel_alone_in_both_styles(model: WisardModel, tmp_path: Path, style: str) -> None:
+    options = CompileOptions(target="pixel", style=style)  # type: ignore[arg-type]
+    built = compile_model(model, tmp_path / "pixel", options, silent)
+    assert built.failure is None
+    assert built.report["care"]["codes"] == 2**8
+    text = (tmp_path / "pixel" / "pixel.v").read_text()
+    assert ("DONT_TOUCH" in text) == (style == "luts")
+
+
+def test_a_wrong_circuit_does_not_leave_unnoticed(
+    model: WisardModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The emitted text is spoiled between writing and checking: one bit of one LUT.
+    def spoil_then_check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
+        path = circuits.verilog
+        text = path.read_text()
+        place = text.index("'h", text.index(".INIT")) + 2
+        digit = format(int(text[place], 16) ^ 1, "x")
+        path.write_text(text[:place] + digit + text[place + 1 :])
+        return check(design, circuits, progress)
+
+    monkeypatch.setattr("wnn2hdl.pipeline.compile.check", spoil_then_check)
+    built = compile_model(model, tmp_path / "pixel", CompileOptions(target="pixel"), silent)
+    assert built.failure is not None
+    assert "differs from the model" in built.failure
+    assert (tmp_path / "pixel" / "FAILED").read_text() == built.failure + "\n"
+    assert json.loads((tmp_path / "pixel" / "report.json").read_text())["proof"]["status"] == "failed"
+
+
+def test_a_failing_compile_leaves_no_folder(model: WisardModel, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--care"):
+        compile_model(model, tmp_path / "block", CompileOptions(mode="domain"), silent)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_too_many_luts_fail() -> None:
+    build = Build(Path("b"), {"target": "block", "parts": {"block": {"luts": 22}}}, None)
+    require_luts(build, 22)
+    with pytest.raises(CheckError, match="22, allowed are 21"):
+        require_luts(build, 21)
+
+
+def test_a_design_survives_its_file(build: Path, tmp_path: Path) -> None:
+    design = Design.load(build)
+    design.save(tmp_path)
+    for name in ("design.json", "model.json"):
+        assert (tmp_path / name).read_bytes() == (build / name).read_bytes()
+    assert isinstance(design.pixel, LutNetwork)

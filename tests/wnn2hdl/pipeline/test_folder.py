@@ -1,0 +1,55 @@
+"""Build folders appear whole or not at all."""
+
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.pipeline.folder import MANIFEST, staged
+
+
+def test_the_folder_appears_when_all_is_written(tmp_path: Path) -> None:
+    with staged(tmp_path / "new" / "build") as staging:
+        (staging / MANIFEST).write_text("{}")
+        assert not (tmp_path / "new" / "build").exists()
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["build"]
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_nothing_is_left_of_what_failed_and_the_earlier_build_stays(
+    tmp_path: Path, error: type[BaseException]
+) -> None:
+    with staged(tmp_path / "build") as staging:
+        (staging / MANIFEST).write_text("first")
+
+    def fail() -> None:
+        with staged(tmp_path / "build") as staging:
+            (staging / MANIFEST).write_text("second")
+            raise error
+
+    with pytest.raises(error):
+        fail()
+    assert [path.name for path in tmp_path.iterdir()] == ["build"]
+    assert (tmp_path / "build" / MANIFEST).read_text() == "first"
+
+
+def test_an_earlier_build_is_replaced_whole(tmp_path: Path) -> None:
+    for name in ("old", "new"):
+        with staged(tmp_path / "build") as staging:
+            (staging / MANIFEST).write_text(name)
+            (staging / name).touch()
+    assert {path.name for path in (tmp_path / "build").iterdir()} == {MANIFEST, "new"}
+
+
+def test_what_is_no_build_is_not_touched(tmp_path: Path) -> None:
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / "cat.png").touch()
+    for target in (tmp_path / "photos", tmp_path / "photos" / "cat.png"):
+        with pytest.raises(InputError, match="no earlier build"), staged(target):
+            pass
+    assert (tmp_path / "photos" / "cat.png").exists()
+
+
+def test_a_place_that_cannot_be_written_gets_one_line() -> None:
+    with pytest.raises(InputError, match="cannot"), staged(Path("/proc/build")):
+        pass
