@@ -1,0 +1,83 @@
+"""Proof times, mutants caught and simulators' speed of builds: ``python benchmarks/proof.py build/NAME …``.
+
+Mutants are those of the module named, with the cells it instantiates; a simulator that runs them on every
+cared-for code says which ones the proof has to catch.
+"""
+
+import re
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from wnn2hdl.pipeline.circuits import PARTS, Circuits
+from wnn2hdl.pipeline.design import Design
+from wnn2hdl.pipeline.verification import open_build
+from wnn2hdl.synth import synthesise
+from wnn2hdl.verify.compiled import CompiledSimulator, run_compiled
+from wnn2hdl.verify.mutation import check_proof, make_mutants
+from wnn2hdl.verify.proof import prove, prove_netlists
+from wnn2hdl.verify.vectors import stimulus
+
+MUTANTS = 200
+WINDOWS = 254 * 254
+SIMULATORS: tuple[CompiledSimulator, ...] = ("icarus", "verilator")
+MUTATED: tuple[Literal["pixel", "edge"], ...] = ("pixel", "edge")
+
+
+def proof_times(design: Design, circuits: Circuits) -> None:
+    """Seconds for each part by itself, Verilog against model and netlist against Verilog."""
+    text = circuits.verilog.read_text(encoding="utf-8")
+    for part in PARTS[design.target]:
+        proof = prove(design.specification, {part: circuits.verilog})[part]
+        synthesis = synthesise(text, design.specification.part(part).module)
+        with tempfile.TemporaryDirectory() as name:
+            netlist = Path(name) / "netlist.v"
+            netlist.write_text(synthesis.netlist_verilog, encoding="utf-8")
+            after = prove_netlists(design.specification, {part: (circuits.verilog, netlist)})[part]
+        print(f"  {part}: {proof.status} in {proof.seconds:.2f} s, ", end="")
+        print(f"netlist {after.status} in {after.seconds:.2f} s")
+
+
+def mutants_caught(design: Design, circuits: Circuits) -> None:
+    """Caught of catchable mutants of pixel and edge filter."""
+    text = circuits.verilog.read_text(encoding="utf-8")
+    for part in MUTATED:
+        module = design.specification.part(part).module
+        found = re.search(rf"^module {module}\b.*?^endmodule$", text, re.DOTALL | re.MULTILINE)
+        if found is None:
+            continue
+        models = "".join(re.findall(r"^module LUT\d.*?^endmodule\n", text, re.DOTALL | re.MULTILINE))
+        mutants = [
+            replace(mutant, verilog=f"{mutant.verilog}\n{models}")
+            for mutant in make_mutants(found[0], MUTANTS, 0)
+        ]
+        started = time.perf_counter()
+        report = check_proof(design.specification, part, mutants, "icarus")
+        print(f"  {part}: {report} ({time.perf_counter() - started:.0f} s)")
+
+
+def simulators_speed(design: Design, circuits: Circuits) -> None:
+    """Windows a second of the whole block, compiling included."""
+    part = PARTS[design.target][-1]
+    inputs = stimulus(design.specification, part)
+    repeats = -(-WINDOWS // len(next(iter(inputs.values()))))
+    windows = {port: np.concatenate([values] * repeats)[:WINDOWS] for port, values in inputs.items()}
+    for simulator in SIMULATORS:
+        started = time.perf_counter()
+        run_compiled(design.specification.part(part), [circuits.verilog], windows, simulator)
+        seconds = time.perf_counter() - started
+        print(f"  {simulator}: {WINDOWS} windows in {seconds:.1f} s, {WINDOWS / seconds:.0f} a second")
+
+
+if __name__ == "__main__":
+    for folder in sys.argv[1:]:
+        print(folder)
+        its_design, its_circuits, _ = open_build(Path(folder))
+        proof_times(its_design, its_circuits)
+        mutants_caught(its_design, its_circuits)
+        simulators_speed(its_design, its_circuits)

