@@ -14,13 +14,14 @@ from typing import Literal
 
 import numpy as np
 
-from wnn2hdl.pipeline.circuits import PARTS, Circuits
+from wnn2hdl.pipeline.circuits import PARTS, Circuits, component, port_arrays
 from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.verification import open_build
 from wnn2hdl.synth import synthesise
 from wnn2hdl.verify.compiled import CompiledSimulator, run_compiled
 from wnn2hdl.verify.mutation import check_proof, make_mutants
 from wnn2hdl.verify.proof import prove, prove_netlists
+from wnn2hdl.verify.simulation import simulate
 from wnn2hdl.verify.vectors import stimulus
 
 MUTANTS = 200
@@ -62,16 +63,21 @@ def mutants_caught(design: Design, circuits: Circuits) -> None:
 
 
 def simulators_speed(design: Design, circuits: Circuits) -> None:
-    """Windows a second of the whole block, compiling included."""
+    """Windows a second of the whole block, in each simulator."""
     part = PARTS[design.target][-1]
     inputs = stimulus(design.specification, part)
     repeats = -(-WINDOWS // len(next(iter(inputs.values()))))
     windows = {port: np.concatenate([values] * repeats)[:WINDOWS] for port, values in inputs.items()}
     for simulator in SIMULATORS:
         started = time.perf_counter()
-        run_compiled(design.specification.part(part), [circuits.verilog], windows, simulator)
-        seconds = time.perf_counter() - started
-        print(f"  {simulator}: {WINDOWS} windows in {seconds:.1f} s, {WINDOWS / seconds:.0f} a second")
+        _, seconds = run_compiled(design.specification.part(part), [circuits.verilog], windows, simulator)
+        whole = time.perf_counter() - started
+        print(
+            f"  {simulator}: {WINDOWS / seconds:.0f} windows a second, {WINDOWS / whole:.0f} with compiling"
+        )
+    expected = design.specification.evaluate(part, windows)
+    result = simulate(component(design, part), port_arrays(windows), port_arrays(expected))
+    print(f"  amaranth: {result.vectors_per_second:.0f} windows a second")
 
 
 if __name__ == "__main__":

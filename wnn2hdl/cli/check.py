@@ -69,6 +69,7 @@ def simulate_command(
         "windows": result.windows,
         "seconds": result.seconds,
         "windows_per_second": rate,
+        "compile_seconds": result.compile_seconds,
         "cared": result.cared,
         "foreground": float(np.mean(result.foreground)),
         "pictures": [str(output / f"{image.stem}-{name}.png") for name in pictures],

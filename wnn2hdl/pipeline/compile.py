@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from wnn2hdl.pipeline.training import Progress, pixel_encoder
 from wnn2hdl.report import (
     BuildReport,
     Care,
+    EdgeFigures,
     Minimised,
     PartFigures,
     Parts,
@@ -180,6 +181,7 @@ def _report(
         },
         proof=Proof(checked.status, checked.method, checked.proof_seconds),
         care=Care(int(specification.pixel_care.sum()), covered),
+        edges=_edges(planned, options),
         accuracy=circuit_accuracy,
         model_accuracy=model_accuracy,
         options={
@@ -194,6 +196,20 @@ def _report(
         hashes={"model": design.model.digest()},
         tools={**{name: version(name) for name in GENERATORS}, yosys.name: yosys.version},
         seconds={**clock.seconds, **checked.seconds},
+    )
+
+
+def _edges(planned: Plan, options: CompileOptions) -> EdgeFigures:
+    edge_filter, agreement = planned.design.specification.edge_filter, planned.agreement
+    figures = EdgeFigures(edge_filter.name, edge_filter.size)
+    if agreement is None:
+        return figures
+    return replace(
+        figures,
+        precision=agreement.precision,
+        recall=agreement.recall,
+        f1=agreement.f1,
+        imagery=str(options.imagery),
     )
 
 

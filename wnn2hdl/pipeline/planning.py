@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from wnn2hdl.edges import boundary, from_file, half_plane
+from wnn2hdl.edges import Agreement, boundary, from_file, half_plane
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel
 from wnn2hdl.minimise import Minimised, espresso, map_luts
 from wnn2hdl.pipeline.design import Design, Mode, Style, Target, tables
-from wnn2hdl.pipeline.imagery import learn_edges, survey
+from wnn2hdl.pipeline.imagery import edge_agreement, learn_edges, survey
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.tables import care_set
 from wnn2hdl.verify.specification import Specification
@@ -46,6 +46,11 @@ class CompileOptions:
     effort: int = 1
     sobel_threshold: int = 128
 
+    @property
+    def imagery(self) -> Path | None:
+        """The imagery in which edges are looked at."""
+        return self.edge_images or self.care
+
 
 @dataclass(frozen=True, eq=False)
 class Plan:
@@ -55,11 +60,13 @@ class Plan:
         design: the design.
         covers: the two-level covers of the pixel classifier and the edge filter, for the report.
         methods: how each network was found.
+        agreement: how far the filter's edges are Canny's; None without imagery to measure it on.
     """
 
     design: Design
     covers: dict[str, Minimised]
     methods: dict[str, str]
+    agreement: Agreement | None
 
 
 def plan(model: WisardModel, options: CompileOptions, progress: Progress) -> Plan:
@@ -82,7 +89,9 @@ def plan(model: WisardModel, options: CompileOptions, progress: Progress) -> Pla
         networks.append(mapping.network)
         progress(f"minimising {name}", 2, 2)
     design = Design(specification, options.mode, options.target, options.style, *networks)
-    return Plan(design, covers, methods)
+    imagery = options.imagery
+    agreement = edge_agreement(specification.edge_filter, model, imagery, progress) if imagery else None
+    return Plan(design, covers, methods, agreement)
 
 
 def _specify(model: WisardModel, options: CompileOptions, progress: Progress) -> Specification:
@@ -109,10 +118,9 @@ def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress
     if options.edges == "half-plane":
         return half_plane()
     if options.edges == "learned":
-        folder = options.edge_images or options.care
-        if folder is None:
+        if options.imagery is None:
             raise InputError(
                 "learned edge patterns need imagery to learn from", mend="give a folder with --edge-images"
             )
-        return learn_edges(model, folder, options.edge_patterns, options.edge_luts, progress)
+        return learn_edges(model, options.imagery, options.edge_patterns, options.edge_luts, progress)
     return from_file(Path(options.edges))

@@ -94,6 +94,27 @@ class Care:
 
 
 @dataclass(frozen=True)
+class EdgeFigures:
+    """The edge filter, and how far its edges are Canny's within one pixel; None where not measured.
+
+    Attributes:
+        name: of the pattern set.
+        patterns: how many windows of 512 count as an edge.
+        precision: share of its edge pixels that are near one of Canny's, 0 to 1.
+        recall: share of Canny's edge pixels that are near one of its own, 0 to 1.
+        f1: their harmonic mean.
+        imagery: the folder it was measured on; learned patterns may come from the same.
+    """
+
+    name: str | None = None
+    patterns: int | None = None
+    precision: float | None = None
+    recall: float | None = None
+    f1: float | None = None
+    imagery: str | None = None
+
+
+@dataclass(frozen=True)
 class PublishedFigure:
     """A figure that others published and nobody measured here."""
 
@@ -129,6 +150,7 @@ class BuildReport:
         minimised: by the name of the table.
         proof: how the Verilog was checked.
         care: where circuit and model are equal.
+        edges: the edge filter.
         accuracy: of the circuit, 0 to 1, on labelled pixels; None if there were none.
         model_accuracy: of the model on the same pixels.
         options: the options of the command that are part of the result.
@@ -147,6 +169,7 @@ class BuildReport:
     minimised: Mapping[str, Minimised] = field(default_factory=dict)
     proof: Proof = Proof()
     care: Care = Care()
+    edges: EdgeFigures = EdgeFigures()
     accuracy: float | None = None
     model_accuracy: float | None = None
     options: Mapping[str, Any] = field(default_factory=dict)

@@ -68,11 +68,18 @@ def _proof(proof: Mapping[str, Any]) -> str:
 
 
 def _answers(report: Mapping[str, Any]) -> list[tuple[str, str]]:
+    edges = report["edges"]
     return [
         ("accuracy of the circuit", _percent(report["accuracy"])),
         ("accuracy of the model", _percent(report["model_accuracy"])),
         ("pixel codes cared for", _cell(report["care"]["codes"])),
         ("share of other imagery that these codes cover", _percent(report["care"]["coverage"])),
+        ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
+        *(
+            (f"{figure} of its edges against Canny's, within one pixel", _percent(edges[figure]))
+            for figure in ("precision", "recall", "f1")
+        ),
+        ("measured on", _cell(edges["imagery"])),
     ]
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from wnn2hdl.errors import ToolError
-from wnn2hdl.tools.runner import run
+from wnn2hdl.tools.runner import Completed, run
 
 _VERILATOR_ERROR = re.compile(r"%Error")
 
@@ -75,7 +75,7 @@ def find_verilator() -> Simulator:
     )
 
 
-def run_icarus(sources: Sequence[Path], top: str, *, cwd: Path, timeout: float) -> str:
+def run_icarus(sources: Sequence[Path], top: str, *, cwd: Path, timeout: float) -> Completed:
     """Compile a Verilog-2005 testbench with Icarus and run it.
 
     Args:
@@ -85,7 +85,7 @@ def run_icarus(sources: Sequence[Path], top: str, *, cwd: Path, timeout: float) 
         timeout: seconds, for each of the two steps.
 
     Returns:
-        What the bench printed.
+        What the bench printed, and how long it ran without being compiled.
 
     Raises:
         ToolError: Icarus is missing, the sources do not compile, or the bench ended by ``$fatal``, ``$stop``
@@ -99,10 +99,10 @@ def run_icarus(sources: Sequence[Path], top: str, *, cwd: Path, timeout: float) 
         timeout=timeout,
         error_line=re.compile(r".*\berror: "),
     )
-    return run([icarus.binary.with_name("vvp"), "-N", compiled.resolve()], cwd=cwd, timeout=timeout).output
+    return run([icarus.binary.with_name("vvp"), "-N", compiled.resolve()], cwd=cwd, timeout=timeout)
 
 
-def run_verilator(sources: Sequence[Path], top: str, *, cwd: Path, timeout: float) -> str:
+def run_verilator(sources: Sequence[Path], top: str, *, cwd: Path, timeout: float) -> Completed:
     """Compile a Verilog testbench with Verilator and a C++ compiler, and run it.
 
     Args, returns and errors are those of `run_icarus`; a warning of Verilator is an error, as by its default.
@@ -119,7 +119,7 @@ def run_verilator(sources: Sequence[Path], top: str, *, cwd: Path, timeout: floa
         environment=verilator.environment,
         error_line=_VERILATOR_ERROR,
     )
-    return run([build / f"V{top}"], cwd=cwd, timeout=timeout, error_line=_VERILATOR_ERROR).output
+    return run([build / f"V{top}"], cwd=cwd, timeout=timeout, error_line=_VERILATOR_ERROR)
 
 
 def lint_icarus(sources: Sequence[Path], top: str, *, timeout: float) -> list[str]:

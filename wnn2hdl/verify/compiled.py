@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import CheckError
-from wnn2hdl.tools import run_icarus, run_verilator
+from wnn2hdl.tools import Completed, run_icarus, run_verilator
 from wnn2hdl.verify.specification import Part, Samples
 
 CompiledSimulator = Literal["verilator", "icarus"]
 
-_RUN: dict[CompiledSimulator, Callable[..., str]] = {"verilator": run_verilator, "icarus": run_icarus}
+_RUN: dict[CompiledSimulator, Callable[..., Completed]] = {"verilator": run_verilator, "icarus": run_icarus}
 
 _UNKNOWN = 255
 _DIGITS = np.full(256, _UNKNOWN, dtype=np.uint8)
@@ -33,7 +33,7 @@ def run_compiled(
     simulator: CompiledSimulator,
     *,
     timeout: float = 600.0,
-) -> Samples:
+) -> tuple[Samples, float]:
     """Simulate a combinational circuit.
 
     Args:
@@ -44,7 +44,7 @@ def run_compiled(
         timeout: seconds for compiling and for running, each.
 
     Returns:
-        int64 ``[samples]`` for each output port.
+        int64 ``[samples]`` for each output port, and the seconds of the run itself, without compiling.
 
     Raises:
         CheckError: an output is undefined (x or z) for a sample.
@@ -57,7 +57,7 @@ def run_compiled(
         bench.write_text(_testbench(part), encoding="utf-8")
         columns = [_to_bytes(inputs[port], width) for port, width in part.inputs.items()]
         np.concatenate(columns, axis=1).tofile(folder / "inputs.bin")
-        _RUN[simulator]([bench, *sources], "drive", cwd=folder, timeout=timeout)
+        seconds = _RUN[simulator]([bench, *sources], "drive", cwd=folder, timeout=timeout).seconds
         text = np.fromfile(folder / "outputs.hex", dtype=np.uint8)
     widths = {port: _digits(width) for port, width in part.outputs.items()}
     if len(text) != samples * sum(widths.values()):
@@ -72,7 +72,7 @@ def run_compiled(
         weights = 16 ** np.arange(width - 1, -1, -1, dtype=np.int64)
         outputs[port] = digits[:, start : start + width].astype(np.int64) @ weights
         start += width
-    return outputs
+    return outputs, seconds
 
 
 def _testbench(part: Part) -> str:

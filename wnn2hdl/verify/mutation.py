@@ -205,7 +205,7 @@ def _differs(
         path = Path(name) / "mutants.v"
         path.write_text("\n".join([*texts, *lines, "endmodule", ""]), encoding="utf-8")
         samples = _cared_samples(specification, part)
-        answers = run_compiled(Part("mutants", ports.inputs, outputs), [path], samples, simulator)
+        answers, _ = run_compiled(Part("mutants", ports.inputs, outputs), [path], samples, simulator)
     expected = specification.evaluate(part, samples)[output]
     return np.array([bool((answers[name] != expected).any()) for name in outputs])
 

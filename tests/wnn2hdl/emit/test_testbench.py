@@ -44,7 +44,7 @@ def test_vectors_put_the_ports_side_by_side() -> None:
 
 
 def test_a_right_circuit_passes(tmp_path: Path) -> None:
-    assert run_icarus(bench(tmp_path, COUNTS), "match_tb", cwd=tmp_path, timeout=60) == (
+    assert run_icarus(bench(tmp_path, COUNTS), "match_tb", cwd=tmp_path, timeout=60).output == (
         "PASS: match, 4096 vectors\n"
     )
 
@@ -77,4 +77,4 @@ def test_missing_vectors_fail(tmp_path: Path) -> None:
 @pytest.mark.skipif(shutil.which("g++") is None, reason="no C++ compiler")
 def test_it_runs_in_verilator_too(tmp_path: Path) -> None:
     files = bench(tmp_path, COUNTS)
-    assert "PASS: match, 4096 vectors" in run_verilator(files, "match_tb", cwd=tmp_path, timeout=300)
+    assert "PASS: match, 4096 vectors" in run_verilator(files, "match_tb", cwd=tmp_path, timeout=300).output

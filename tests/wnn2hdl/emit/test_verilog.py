@@ -156,6 +156,6 @@ def test_the_verilog_is_clean_and_computes_what_the_golden_model_does(name: str,
     for files, top in ((sources, name), ([*sources, bench], f"{name}_tb")):
         assert lint_icarus(files, top, timeout=60) == []
         assert lint_verilator(files, top, timeout=60) == []
-    assert run_icarus([*sources, bench], f"{name}_tb", cwd=tmp_path, timeout=60).startswith(
+    assert run_icarus([*sources, bench], f"{name}_tb", cwd=tmp_path, timeout=60).output.startswith(
         f"PASS: {name}, 500 vectors"
     )

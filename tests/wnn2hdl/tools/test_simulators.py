@@ -74,7 +74,7 @@ def nothing_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterat
 @pytest.mark.simulator
 def test_icarus_runs_a_bench(icarus: None, sources: list[Path], tmp_path: Path) -> None:
     assert find_icarus().version[0].isdigit()
-    assert "PASS" in run_icarus(sources, "bench", cwd=tmp_path, timeout=60)
+    assert "PASS" in run_icarus(sources, "bench", cwd=tmp_path, timeout=60).output
 
 
 @pytest.mark.simulator
@@ -98,7 +98,7 @@ def test_icarus_names_the_line_that_does_not_compile(
 @pytest.mark.simulator
 def test_verilator_runs_a_bench(verilator: None, sources: list[Path], tmp_path: Path) -> None:
     assert find_verilator().version[0].isdigit()
-    assert "PASS" in run_verilator(sources, "bench", cwd=tmp_path, timeout=300)
+    assert "PASS" in run_verilator(sources, "bench", cwd=tmp_path, timeout=300).output
 
 
 @pytest.mark.simulator

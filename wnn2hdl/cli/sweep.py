@@ -1,0 +1,231 @@
+"""`sweep`: thousands of architectures trained and costed, and any of their models rebuilt."""
+
+import time
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import (
+    BleachingType,
+    folder,
+    images_option,
+    labelled,
+    masks_option,
+    seed_option,
+)
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.encode import high_bits, parse_bits
+from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.sweep import (
+    TRAINING_PIXELS,
+    Outcome,
+    PixelSets,
+    Recipe,
+    Trial,
+    circuits,
+    draw,
+    draw_all,
+    find_trial,
+    grid,
+    rebuild,
+    run_distributed,
+    run_locally,
+    run_sweep,
+    run_trial,
+    write_page,
+)
+
+DEFAULT_FOLDER = Path("build/sweep")
+
+
+class RangeType(click.ParamType[tuple[int, ...] | str]):
+    """``2..12``, both ends included, or a single number."""
+
+    name = "LOW..HIGH"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, ...]:
+        """All numbers of the range."""
+        if isinstance(value, tuple):
+            return value
+        low, _, high = str(value).partition("..")
+        ends = (low, high or low)
+        if not all(end.isdecimal() for end in ends) or not 1 <= int(ends[0]) <= int(ends[1]):
+            self.fail(f"{value!r} is no range of numbers from 1 on, as in 2..12", param, ctx)
+        return tuple(range(int(ends[0]), int(ends[1]) + 1))
+
+
+@app.command("sweep")
+@images_option
+@masks_option
+@click.option(
+    "--n", "address_bits", type=RangeType(), default="2..12", show_default=True, help="Address bits."
+)
+@click.option("--k", "rams", type=RangeType(), default="2..20", show_default=True, help="RAMs of a class.")
+@click.option(
+    "--trials", type=click.IntRange(min=1), default=10, show_default=True, help="Of each architecture."
+)
+@click.option("--bits", metavar="R7,R6,…", help="Pixel bits to read; by default the 4 high bits of R, G, B.")
+@click.option(
+    "--pixels",
+    type=click.IntRange(min=1),
+    default=TRAINING_PIXELS,
+    show_default=True,
+    help="Training pixels, spread evenly over images and classes.",
+)
+@click.option(
+    "--bleach",
+    type=BleachingType(),
+    default="auto",
+    show_default=True,
+    help="Bleaching threshold; auto cross-validates it by image.",
+)
+@click.option(
+    "--mode",
+    type=click.Choice(["exact", "domain"]),
+    default="domain",
+    show_default=True,
+    help="Circuits equal to the classifier on every code, or on those of the training images.",
+)
+@click.option(
+    "--care-min",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="How often a code must occur in the training images to be cared for.",
+)
+@seed_option
+@click.option("--search", is_flag=True, help="Also search beyond the grid with NSGA-II; as many trials.")
+@click.option("--scheduler", metavar="ADDRESS", help="Run on this Dask scheduler, as in tcp://host:8786.")
+@click.option("--best", is_flag=True, help="Write the model of the best trial of the chosen architecture.")
+@click.option("--trial", "name", metavar="ID", help="Write the model of this trial, as in n4-k16-t3.")
+@click.option(
+    "--results", type=folder, help=f"With --best or --trial: the sweep's folder.  [default: {DEFAULT_FOLDER}]"
+)
+@click.option(
+    "-o",
+    "output",
+    type=click.Path(path_type=Path),
+    help=f"The sweep's folder, or with --best or --trial the model file.  [default: {DEFAULT_FOLDER}]",
+)
+@json_option
+def sweep_command(
+    images: Path | None,
+    masks: Path | None,
+    address_bits: tuple[int, ...],
+    rams: tuple[int, ...],
+    trials: int,
+    bits: str | None,
+    pixels: int,
+    bleach: int | str,
+    mode: str,
+    care_min: int,
+    seed: int,
+    search: bool,
+    scheduler: str | None,
+    best: bool,
+    name: str | None,
+    results: Path | None,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Train and cost every architecture of a grid, and choose one.
+
+    Results are kept as they come: the same command goes on where a killed one stopped. Half of the images
+    are trained on, the others are held out.
+    """
+    where, model_file = _places(output, results, best=best, name=name)
+    encoder = parse_bits(bits) if bits else high_bits()
+    recipe = Recipe(
+        seed,
+        encoder.bits,
+        bleach if isinstance(bleach, int) else None,
+        care_min if mode == "domain" else None,
+    )
+    plan = grid(recipe, address_bits, rams, trials)
+    run = partial(run_distributed, scheduler) if scheduler else run_locally
+    with progress() as report:
+        sets = draw(labelled(images, masks, None, None, seed), pixels=pixels, seed=seed, progress=report)
+        if name is not None:
+            _write_model(sets, find_trial(plan, where, name), model_file, as_json=as_json)
+            return
+        started = time.perf_counter()
+        outcome = run_sweep(sets, plan, where, run, report, search=search)
+        seconds = time.perf_counter() - started
+    if best:
+        if outcome.decision is None:
+            raise InputError(
+                "no trial is valid", value=f"{len(plan)} trials", mend="see their errors in trials.csv"
+            )
+        trial = find_trial(plan, where, outcome.decision.chosen.best.name)
+        _write_model(sets, trial, model_file, as_json=as_json)
+        return
+    _show(outcome, sets, where)
+    emit(
+        outcome.to_json() | {"folder": str(where), "seconds": seconds},
+        _summary(outcome, where),
+        as_json=as_json,
+    )
+
+
+def _places(output: Path | None, results: Path | None, *, best: bool, name: str | None) -> tuple[Path, Path]:
+    """The sweep's folder and, where one is wanted, the model file."""
+    if best and name is not None:
+        raise InputError("--best and --trial name different models", mend="give one of them")
+    if not best and name is None:
+        if results is not None:
+            raise InputError("--results goes with --best or --trial", mend="name the sweep's folder with -o")
+        return output or DEFAULT_FOLDER, Path()
+    if output is None:
+        raise InputError("there is no place for the model", mend="name its file with -o MODEL.json")
+    if output.is_dir():
+        raise InputError("the model file is a folder", value=output, mend="name a file, as in -o MODEL.json")
+    return results or DEFAULT_FOLDER, output
+
+
+def _write_model(sets: PixelSets, trial: Trial, path: Path, *, as_json: bool) -> None:
+    record = run_trial(sets, trial)
+    if record.status == "failed":
+        raise InputError(
+            "the trial failed", value=f"{trial.name} ({record.error})", mend="choose another one"
+        )
+    rebuild(sets, trial).save(path)
+    text = (
+        f"{path}: trial {trial.name}, accuracy {record.accuracy:.4f} on the held-out images, "
+        f"{record.luts} LUTs a pixel, bleaching threshold {record.bleaching}, {record.status}"
+    )
+    emit(record.to_json() | {"model": str(path)}, text, as_json=as_json)
+
+
+def _show(outcome: Outcome, sets: PixelSets, where: Path) -> None:
+    clouds = [("grid", circuits(outcome.plan, where, search=False), outcome.front)]
+    if outcome.searched:
+        clouds.append(("NSGA-II", circuits(outcome.plan, where, search=True), outcome.search_front))
+    entered = outcome.decision.finalists if outcome.decision else ()
+    try:
+        drawn = draw_all(where, outcome.surface, [x.cell for x in entered], entered, clouds)
+        write_page(outcome, sets, drawn, where)
+    except ExtraMissingError as error:
+        # The tables are complete without them.
+        click.echo(f"wnn2hdl: {error.line()}", err=True)
+
+
+def _summary(outcome: Outcome, where: Path) -> str:
+    data = outcome.to_json()
+    lines = [
+        f"{where}: {data['trials']:,} trials, {data['saturated']:,} saturated, {data['failed']:,} failed",
+        *(
+            f"peak n = {x['n']}, k = {x['k']}: mean accuracy {x['accuracy']:.4f}, {x['luts']:.1f} LUTs"
+            for x in data["peaks"][:3]
+        ),
+        data["reasons"],
+        *(
+            f"{x.luts:>5} LUTs: accuracy {x.circuit_accuracy:.4f} ({x.name})"
+            for x in (*outcome.front, *outcome.search_front)
+        ),
+    ]
+    return "\n".join(lines)

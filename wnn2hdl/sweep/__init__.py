@@ -1,0 +1,32 @@
+"""Architecture search: thousands of classifiers trained and costed, and one chosen with statistics."""
+
+from wnn2hdl.sweep.distributed import run_distributed
+from wnn2hdl.sweep.grid import Plan, Recipe, Trial, grid
+from wnn2hdl.sweep.local import run_locally
+from wnn2hdl.sweep.page import write_page
+from wnn2hdl.sweep.pictures import draw_all
+from wnn2hdl.sweep.pixels import TRAINING_PIXELS, PixelSets, draw
+from wnn2hdl.sweep.study import Outcome, circuits, find_trial, run_sweep
+from wnn2hdl.sweep.trial import Record, answers_digest, rebuild, run_trial
+
+__all__ = [
+    "TRAINING_PIXELS",
+    "Outcome",
+    "PixelSets",
+    "Plan",
+    "Recipe",
+    "Record",
+    "Trial",
+    "answers_digest",
+    "circuits",
+    "draw",
+    "draw_all",
+    "find_trial",
+    "grid",
+    "rebuild",
+    "run_distributed",
+    "run_locally",
+    "run_sweep",
+    "run_trial",
+    "write_page",
+]

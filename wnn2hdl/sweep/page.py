@@ -1,0 +1,68 @@
+"""The sweep as one HTML page, pictures included, that needs no other file."""
+
+import base64
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+
+from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.ir.files import write_text
+from wnn2hdl.sweep.pixels import PixelSets
+from wnn2hdl.sweep.study import Outcome
+
+PAGE_FILE = "index.html"
+
+_CAPTIONS = {
+    "surface": "Mean accuracy over n and k.",
+    "contour": "The same as a contour, finalists marked.",
+    "cost": "Logarithm of the mean LUTs a pixel.",
+    "finalists": "Accuracies of the finalists' valid trials.",
+    "pareto": "Circuits by LUTs and accuracy, with the Pareto front.",
+}
+
+
+def write_page(outcome: Outcome, sets: PixelSets, pictures: Sequence[str], folder: Path) -> Path:
+    """Write `PAGE_FILE` into the folder of a sweep.
+
+    Args:
+        outcome: what was found.
+        sets: what it was found on.
+        pictures: names of the pictures in the folder, as `draw_all` returns them.
+        folder: the sweep's.
+
+    Raises:
+        ExtraMissingError: Jinja2 is not installed.
+        InputError: the folder cannot be written.
+    """
+    try:
+        from jinja2 import Environment, StrictUndefined
+    except ImportError as error:
+        raise ExtraMissingError(
+            "the page needs Jinja2", mend="install it with: pip install 'wnn2hdl[plot]'"
+        ) from error
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    template = environment.from_string(files(__package__).joinpath("page.html").read_text(encoding="utf-8"))
+    recipe = outcome.plan.recipe
+    path = folder / PAGE_FILE
+    text = template.render(
+        **outcome.to_json(),
+        architectures=len(outcome.plan.cells),
+        pixels=sets.pixels,
+        training_images=len(sets.training_images),
+        held_out_images=len(sets.held_out_images),
+        mode="circuits equal the classifier on every code"
+        if recipe.care_minimum is None
+        else "circuits equal the classifier on the codes that occur in the training images, at least "
+        f"{recipe.care_minimum} times each, and are free elsewhere",
+        seed=recipe.seed,
+        bits=" ".join(recipe.bits),
+        pictures=[
+            {
+                "data": base64.b64encode((folder / f"{name}.svg").read_bytes()).decode(),
+                "caption": _CAPTIONS[name],
+            }
+            for name in pictures
+        ],
+    )
+    write_text(path, text)
+    return path
