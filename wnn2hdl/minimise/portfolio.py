@@ -13,7 +13,12 @@ from wnn2hdl.minimise.check import require_equal, wrong_codes
 from wnn2hdl.minimise.decompose import decompose, mux_tree
 from wnn2hdl.minimise.draft import Bits, Draft
 from wnn2hdl.minimise.improve import improve
-from wnn2hdl.minimise.recipes import care_candidates, network_candidates, truth_candidates
+from wnn2hdl.minimise.recipes import (
+    care_candidates,
+    network_candidates,
+    truth_candidates,
+    two_lut_candidates,
+)
 from wnn2hdl.minimise.support import minimum_supports
 
 EFFORTS = (0, 1, 2, 3)
@@ -91,6 +96,8 @@ def map_luts(
         care_values = table.values & table.care[:, np.newaxis]
         search.offer_all(truth_candidates(care_values, effort))
         search.offer_all(care_candidates(table.values, table.care, effort))
+    if not search.done and effort > 0 and len(table.outputs) == 1:
+        search.offer_all(_exact(search.leaders(), table))
     if not search.done and effort > 1 and search.best is not None:
         if not table.care.all():
             filled = search.best.network(table).evaluate(np.arange(len(table.care)))
@@ -202,6 +209,14 @@ def _decomposed(table: TruthTable, effort: int) -> Iterator[tuple[str, Draft]]:
         draft = Draft(len(table.inputs))
         draft.outputs = [decompose(draft, everything, on, off, rng, breadth) for on, off in functions]
         yield "decomposition" + "".join(f" {x}" for x in breadth), draft
+
+
+def _exact(drafts: list[Draft], table: TruthTable) -> Iterator[tuple[str, Draft]]:
+    """Two LUTs for one of the functions that the drafts make of the table and its don't-cares."""
+    codes = np.arange(len(table.care))
+    truths = [draft.network(table).evaluate(codes)[:, 0] for draft in drafts]
+    for truth in {x.tobytes(): x for x in truths}.values():
+        yield from two_lut_candidates(truth)
 
 
 def _improved(drafts: list[Draft], table: TruthTable, effort: int) -> Iterator[tuple[str, Draft]]:

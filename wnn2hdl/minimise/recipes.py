@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import ToolError
 from wnn2hdl.ir import LUT_INPUTS
 from wnn2hdl.minimise.draft import ONE, ZERO, Bits, Draft
+from wnn2hdl.minimise.support import members, minimum_supports, restrict
 from wnn2hdl.tools import find_abc, run_abc
 
 # Seven inputs are two LUTs and a MUXF7, eight are four LUTs, two MUXF7 and a MUXF8.
@@ -45,6 +46,8 @@ _FROM_NETWORK = (
     ("polish", f"read_lut six.lut; {_POLISH}"),
     ("remap", f"read_lut six.lut; {_REMAP}; {_REMAP}"),
 )
+# Inputs that two LUTs can read between them, one pin being the wire that joins them.
+_MAX_TWO_LUT_INPUTS = 2 * LUT_INPUTS - 1
 # Seconds; a script that hangs loses its candidates, nothing else.
 _TIME_LIMITS = (10.0, 30.0, 60.0, 300.0)
 # Codes above which the text of the care set costs more than it gains.
@@ -90,6 +93,32 @@ def network_candidates(draft: Draft, effort: int) -> Iterator[tuple[str, Draft]]
     """Networks equal to the draft on all codes, made from it."""
     recipes = [(name, f"read_blif f.blif; {script}") for name, script in _FROM_NETWORK]
     yield from _run(recipes, {"f.blif": to_blif(draft)}, draft.width, effort)
+
+
+def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
+    """The two LUTs that make a completely specified function, bool ``[2**n]``, if there are such two.
+
+    ABC's ``lutexact`` decides this by SAT. Measured (yosys-abc of pyosys 0.70): it takes at most 12 inputs and
+    under 0.1 s for two LUTs, whatever the function. Three LUTs take from 0.1 s to more than 10 s at eight
+    inputs, and only a time limit could end that, which would let the result depend on the machine; so three
+    are not asked for.
+    """
+    support = members(minimum_supports(truth, ~truth)[0])
+    width = len(support)
+    if not LUT_INPUTS < width <= _MAX_TWO_LUT_INPUTS:
+        return
+    column = restrict(truth, sum(1 << x for x in support))
+    digits = np.packbits(column, bitorder="little")[::-1].tobytes().hex()
+    # ABC names the file after the first 16 digits; if there is no solution, there is no file to read.
+    script = f"lutexact -d -N {width} -M 2 -K {LUT_INPUTS} {digits}; read_blif {digits[:16]}_.blif"
+    for method, small in _run([("lutexact", script)], {}, width, 0):
+        draft = Draft(truth.shape[0].bit_length() - 1)
+        signals = dict(enumerate(support))
+        for number in small.order():
+            cell = small.cells[number]
+            signals[number] = draft.add(tuple(signals[x] for x in cell.fanins), cell.contents)
+        draft.outputs = [signals[x] for x in small.outputs]
+        yield method, draft
 
 
 def _run(

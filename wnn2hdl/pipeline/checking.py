@@ -1,7 +1,6 @@
 """Checking emitted Verilog against the model and counting what it costs, at the same time."""
 
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,19 +8,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.ir.files import write_text
-from wnn2hdl.pipeline.circuits import COUNTED, PARTS, SIMULATED, SOBEL, Circuits, component, port_arrays
+from wnn2hdl.pipeline.circuits import COUNTED, PARTS, SOBEL, Circuits
 from wnn2hdl.pipeline.design import Design
+from wnn2hdl.pipeline.simulating import simulate_apart
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise, synthesise_all
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.proof import METHOD, Proof, prove, prove_netlists
-from wnn2hdl.verify.simulation import simulate
 from wnn2hdl.verify.specification import PartName
-from wnn2hdl.verify.vectors import stimulus
 
-_SIMULATE, _PROVE = "simulate", "prove"
+_PROVE = "prove"
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,27 +47,32 @@ class Checked:
 def check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
     """Simulate in Amaranth, prove, synthesise, and prove what was synthesised.
 
-    All but the last run side by side; proof and synthesis in processes of their own. Ctrl-C ends all of them.
+    All but the last run side by side, in processes of their own; Ctrl-C ends all of them.
 
     Raises:
         ToolError: an outside program is missing or failed.
     """
-    stopped = threading.Event()
+    parts = PARTS[design.target]
+    # The matcher takes about as long as all others together.
+    halves = [half for half in (parts[:1], parts[1:]) if half]
     jobs: dict[str, Callable[[], Any]] = {
-        _SIMULATE: partial(_simulate, design, _until(stopped, progress)),
-        _PROVE: partial(prove, design.specification, dict.fromkeys(PARTS[design.target], circuits.verilog)),
+        _PROVE: partial(prove, design.specification, dict.fromkeys(parts, circuits.verilog)),
+        **{f"simulate {half[-1]}": partial(simulate_apart, circuits.verilog.parent, half) for half in halves},
         **{name: partial(_synthesise, job) for name, job in synthesis_jobs(design, circuits).items()},
     }
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
-    try:
-        for position, result in in_parallel(lambda job: job(), jobs.values()):
-            results[names[position]] = result
-            seconds[names[position]] = time.perf_counter() - started
-            progress("proving and synthesising", len(results), len(jobs))
-    finally:
-        stopped.set()
-    (vectors, failure), proofs = results.pop(_SIMULATE), results.pop(_PROVE)
+    for position, result in in_parallel(lambda job: job(), jobs.values()):
+        results[names[position]] = result
+        seconds[names[position]] = time.perf_counter() - started
+        progress("simulating, proving, counting", len(results), len(jobs))
+    proofs = results.pop(_PROVE)
+    vectors: dict[str, int] = {}
+    failure = None
+    for half in halves:
+        simulated, mismatch = results.pop(f"simulate {half[-1]}")
+        vectors |= simulated
+        failure = failure or mismatch
     syntheses: dict[str, Synthesis] = {name: results[name] for name in names if name in results}
     proofs_of_netlists = _prove_netlists(design, circuits, syntheses)
     failures = [failure, _refutation(proofs, "Verilog"), _refutation(proofs_of_netlists, "mapped netlist")]
@@ -106,36 +108,6 @@ def synthesis_jobs(design: Design, circuits: Circuits) -> dict[str, Job]:
 
 def _synthesise(job: Job) -> Synthesis:
     return synthesise(job.verilog, job.top, baseline=job.baseline)
-
-
-def _simulate(design: Design, progress: Progress) -> tuple[dict[str, int], str | None]:
-    """Simulate the circuits; return the number of vectors of each, and the first mismatch in words."""
-    vectors: dict[str, int] = {}
-    for part in SIMULATED[design.target]:
-        inputs = stimulus(design.specification, part)
-        expected = design.specification.evaluate(part, inputs)
-        try:
-            result = simulate(
-                component(design, part),
-                port_arrays(inputs),
-                port_arrays(expected),
-                progress=partial(progress, f"simulating {part}"),
-            )
-        except CheckError as error:
-            return vectors, error.line()
-        vectors[part] = result.vectors
-    return vectors, None
-
-
-def _until(stopped: threading.Event, progress: Progress) -> Progress:
-    """Progress of a thread that nothing can kill: it ends by an error once the work around it has ended."""
-
-    def report(step: str, done: int, total: int) -> None:
-        if stopped.is_set():
-            raise ToolError("stopped, since the work around it has ended")
-        progress(step, done, total)
-
-    return report
 
 
 def _prove_netlists(

@@ -64,6 +64,17 @@ def test_a_cascade_of_two_luts_is_found() -> None:
     assert len(map_luts(table, effort=0).network.luts) == 2
 
 
+def test_two_luts_that_share_inputs_are_found() -> None:
+    codes = np.arange(1 << 8)
+    contents = np.random.default_rng(0).integers(0, 2, (2, 64))
+    inner = contents[0][codes & 63]
+    outer = contents[1][inner | (codes & 7) << 1 | codes >> 6 << 4]
+    table = TruthTable.exact(names("x", 8), ("y",), (outer == 1).reshape(-1, 1))
+    mapping = map_luts(table, effort=1)
+    assert len(mapping.network.luts) == 2
+    assert mapping.method == "lutexact"
+
+
 def test_wires_and_constants_cost_nothing() -> None:
     codes = np.arange(32)
     values = np.stack([codes >> 3 & 1, codes >= 0, codes < 0], axis=1).astype(bool)

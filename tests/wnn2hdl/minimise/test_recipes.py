@@ -5,7 +5,14 @@ from wnn2hdl.errors import ToolError
 from wnn2hdl.minimise import recipes
 from wnn2hdl.minimise.decompose import decompose
 from wnn2hdl.minimise.draft import Draft
-from wnn2hdl.minimise.recipes import care_candidates, from_blif, network_candidates, to_blif, truth_candidates
+from wnn2hdl.minimise.recipes import (
+    care_candidates,
+    from_blif,
+    network_candidates,
+    to_blif,
+    truth_candidates,
+    two_lut_candidates,
+)
 
 WIDTH = 8
 BITS = (np.arange(1 << WIDTH) >> np.arange(WIDTH)[:, np.newaxis] & 1).astype(np.uint8)
@@ -41,6 +48,34 @@ def test_networks_go_to_abc_and_back(truth: np.ndarray) -> None:
     draft.outputs = [decompose(draft, everything, x, ~x, rng) for x in truth.T]
     assert (values_of(from_blif(to_blif(draft), WIDTH)) == truth).all()
     assert all((values_of(found) == truth).all() for _, found in network_candidates(draft, effort=2))
+
+
+@pytest.mark.parametrize(
+    ("inner", "outer"),
+    [
+        ((0, 1, 2, 3, 4, 5), (0, 1, 2, 6, 7)),
+        ((0, 1, 2, 3, 4, 5), (6, 7, 8, 9, 10)),
+        ((11, 9, 7, 5, 3, 1), (1, 3, 5, 2, 6)),  # inputs 0, 4, 8 and 10 are not read
+    ],
+)
+def test_two_luts_are_found_where_there_are_two(inner: tuple[int, ...], outer: tuple[int, ...]) -> None:
+    rng = np.random.default_rng(0)
+    width = max(*inner, *outer) + 1
+    built = Draft(width)
+    built.outputs = [built.add(inner, rng.integers(0, 2, 64).astype(np.uint8))]
+    built.outputs = [built.add((*outer, built.outputs[0]), rng.integers(0, 2, 64).astype(np.uint8))]
+    bits = (np.arange(1 << width) >> np.arange(width)[:, np.newaxis] & 1).astype(np.uint8)
+    truth = built.evaluate(bits)[built.outputs[0]]
+    ((method, found),) = two_lut_candidates(truth.astype(np.bool_))
+    assert method == "lutexact"
+    assert len(found.order()) == 2
+    assert (found.evaluate(bits)[found.outputs[0]] == truth).all()
+
+
+@pytest.mark.parametrize("width", [6, 8, 11, 12])
+def test_nothing_is_found_where_two_luts_are_too_few_or_too_many(width: int) -> None:
+    truth = np.random.default_rng(0).random(1 << width) < 0.5
+    assert list(two_lut_candidates(truth)) == []
 
 
 def test_a_recipe_that_crashes_costs_only_itself(truth: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
