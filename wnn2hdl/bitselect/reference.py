@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.linear_model import LogisticRegression
 
 from wnn2hdl.bitselect.drift import Colours
 
@@ -26,6 +25,9 @@ def fit_reference(colours: Colours) -> Probability:
     Returns:
         a function from colours, int64 ``[u, 3]``, to the probability of the second class, float64 ``[u]``.
     """
+    # scikit-learn takes a second to import, which no command should wait for that does not use it.
+    from sklearn.linear_model import LogisticRegression
+
     labels = np.repeat([0, 1], len(colours.rgb))
     weights = colours.weights.ravel()
     used = weights > 0

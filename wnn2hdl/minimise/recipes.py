@@ -98,9 +98,10 @@ def network_candidates(draft: Draft, effort: int) -> Iterator[tuple[str, Draft]]
 def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
     """The two LUTs that make a completely specified function, bool ``[2**n]``, if there are such two.
 
-    ABC's ``lutexact`` decides this by SAT. Measured (yosys-abc of pyosys 0.70): it takes at most 12 inputs and
-    under 0.1 s for two LUTs, whatever the function. Three LUTs take from 0.1 s to more than 10 s at eight
+    ABC's ``lutexact`` decides this by SAT. Measured (yosys-abc of pyosys 0.70): it takes at most 12 inputs
+    and under 0.1 s for two LUTs, whatever the function. Three LUTs take from 0.1 s to more than 10 s at eight
     inputs, and only a time limit could end that, which would let the result depend on the machine; so three
+    are not asked for.
     are not asked for.
     """
     support = members(minimum_supports(truth, ~truth)[0])

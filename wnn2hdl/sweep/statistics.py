@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # loads its modules when they are used: statistics take half a second
 from numpy.typing import NDArray
-from scipy import stats
 
 LEVEL = 0.05
 """Of significance; intervals cover 1 minus this."""
@@ -70,8 +70,8 @@ def _signed_rank(first: NDArray[np.float64], second: NDArray[np.float64]) -> Com
     differences = first - second
     moved = differences[differences != 0]
     if len(moved):
-        p_value = float(stats.wilcoxon(moved).pvalue)
-        ranks = stats.rankdata(np.abs(moved))
+        p_value = float(scipy.stats.wilcoxon(moved).pvalue)
+        ranks = scipy.stats.rankdata(np.abs(moved))
         effect = float((ranks * np.sign(moved)).sum() / ranks.sum())
     else:
         p_value, effect = 1.0, 0.0
@@ -81,7 +81,7 @@ def _signed_rank(first: NDArray[np.float64], second: NDArray[np.float64]) -> Com
 
 
 def _rank_sum(first: NDArray[np.float64], second: NDArray[np.float64]) -> Comparison:
-    test = stats.mannwhitneyu(first, second, alternative="two-sided")
+    test = scipy.stats.mannwhitneyu(first, second, alternative="two-sided")
     effect = 2 * float(test.statistic) / (len(first) * len(second)) - 1
     low, high = _interval((first, second), lambda x, y, axis: x.mean(axis=axis) - y.mean(axis=axis))
     return Comparison(
@@ -101,7 +101,7 @@ def _interval(
     if min(len(sample) for sample in samples) < 2:
         value = float(statistic(*samples, axis=-1))
         return value, value
-    found = stats.bootstrap(
+    found = scipy.stats.bootstrap(
         samples,
         statistic,
         n_resamples=_RESAMPLES,
