@@ -92,16 +92,15 @@ def map_luts(
     started = time.perf_counter()
     search = _Search(table, progress)
     search.offer_all(_decomposed(table, effort))
+    if not search.done and effort > 0 and search.best is not None and len(table.outputs) == 1:
+        search.offer_all(two_lut_candidates(_filled(table, search.best)[:, 0]))
     if not search.done and (effort > 0 or search.method == "multiplexer tree"):
         care_values = table.values & table.care[:, np.newaxis]
         search.offer_all(truth_candidates(care_values, effort))
         search.offer_all(care_candidates(table.values, table.care, effort))
-    if not search.done and effort > 0 and len(table.outputs) == 1:
-        search.offer_all(_exact(search.leaders(), table))
     if not search.done and effort > 1 and search.best is not None:
         if not table.care.all():
-            filled = search.best.network(table).evaluate(np.arange(len(table.care)))
-            search.offer_all(truth_candidates(filled, effort - 1))
+            search.offer_all(truth_candidates(_filled(table, search.best), effort - 1))
         search.offer_all(network_candidates(search.best, effort))
     if not search.done and _MOVES[effort]:
         search.offer_all(_improved(search.leaders(), table, effort))
@@ -211,12 +210,9 @@ def _decomposed(table: TruthTable, effort: int) -> Iterator[tuple[str, Draft]]:
         yield "decomposition" + "".join(f" {x}" for x in breadth), draft
 
 
-def _exact(drafts: list[Draft], table: TruthTable) -> Iterator[tuple[str, Draft]]:
-    """Two LUTs for one of the functions that the drafts make of the table and its don't-cares."""
-    codes = np.arange(len(table.care))
-    truths = [draft.network(table).evaluate(codes)[:, 0] for draft in drafts]
-    for truth in {x.tobytes(): x for x in truths}.values():
-        yield from two_lut_candidates(truth)
+def _filled(table: TruthTable, draft: Draft) -> NDArray[np.bool_]:
+    """The values that the draft gives all codes, don't-cares as well."""
+    return draft.network(table).evaluate(np.arange(len(table.care)))
 
 
 def _improved(drafts: list[Draft], table: TruthTable, effort: int) -> Iterator[tuple[str, Draft]]:
