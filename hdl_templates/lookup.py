@@ -183,12 +183,12 @@ class LutNetwork:
         """
         signals: dict[str, Value] = dict(zip(self.inputs, bits, strict=True))
         for cell in self.cells:
-            output = Signal(name=cell.name)
             pins = [signals[name] for name in cell.reads]
-            if not isinstance(platform, Emission) and isinstance(cell, LutCell):
-                contents = Const(cell.init, 1 << len(pins))
-                m.d.comb += output.eq(contents.bit_select(Cat(*pins), 1))
-            elif self.style == "cells" and isinstance(platform, Emission):
+            if not isinstance(platform, Emission):
+                signals[cell.name] = self._simulated(m, cell, pins)
+                continue
+            output = Signal(name=cell.name)
+            if self.style == "cells":
                 m.submodules[f"{cell.name}_cell"] = self._instance(cell, pins, output)
             elif isinstance(cell, LutCell):
                 m.d.comb += output.eq(equation(cell.init, len(pins)).expression(pins))
@@ -198,6 +198,20 @@ class LutNetwork:
             signals[cell.name] = output
         constants: dict[str, Value] = {name: Value.cast(value) for name, value in CONSTANTS.items()}
         return [(constants | signals)[signal] for _, signal in self.outputs]
+
+    def _simulated(self, m: Module, cell: LutCell | MuxCell, pins: Sequence[Value]) -> Value:
+        """A cell for Amaranth's simulator, for which a signal costs more than a look-up."""
+        if isinstance(cell, LutCell):
+            value: Value = Const(cell.init, 1 << len(pins)).bit_select(Cat(*pins), 1)
+        else:
+            low, high, select = pins
+            value = Mux(select, high, low)
+        read = [name for other in self.cells for name in other.reads] + [name for _, name in self.outputs]
+        if read.count(cell.name) == 1:
+            return value
+        shared = Signal(name=cell.name)
+        m.d.comb += shared.eq(value)
+        return shared
 
     def _instance(self, cell: LutCell | MuxCell, pins: Sequence[Value], output: Signal) -> Instance:
         if isinstance(cell, LutCell):
