@@ -52,7 +52,9 @@ def mutants_caught(design: Design, circuits: Circuits) -> None:
         found = re.search(rf"^module {module}\b.*?^endmodule$", text, re.DOTALL | re.MULTILINE)
         if found is None:
             continue
-        models = "".join(re.findall(r"^module LUT\d.*?^endmodule\n", text, re.DOTALL | re.MULTILINE))
+        models = "".join(
+            re.findall(r"^module (?:LUT\d|MUXF\d)\b.*?^endmodule\n", text, re.DOTALL | re.MULTILINE)
+        )
         mutants = [
             replace(mutant, verilog=f"{mutant.verilog}\n{models}")
             for mutant in make_mutants(found[0], MUTANTS, 0)
