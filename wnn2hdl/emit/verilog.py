@@ -1,5 +1,6 @@
 """An Amaranth component as one readable Verilog-2001 file."""
 
+import re
 from collections.abc import Mapping, Sequence
 
 from amaranth.back import verilog as back_end
@@ -17,6 +18,8 @@ LINT = """\
 /* verilator lint_off SYMRSVDWORD */
 """
 """What ``verilator -Wall`` remarks on although it is meant so."""
+
+_DECIMAL = re.compile(r"\b(32)'d(\d+)")
 
 
 def verilog(component: Component, *, name: str, header: Sequence[str]) -> str:
@@ -79,6 +82,8 @@ def _module(component: Component, name: str, parts: Mapping[str, Part]) -> str:
     text = back_end.convert(
         component, name=name, platform=Emission(), emit_src=False, strip_internal_attrs=True
     )
+    # Contents of 32 bits are written as decimal numbers, all others in hexadecimal.
+    text = _DECIMAL.sub(lambda match: f"{match[1]}'h{int(match[2]):08x}", text)
     ports = {module: port_widths(part) for module, part in parts.items()}
     netlist = parse(text, *port_widths(component), ports)
     tidy(netlist)

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from wnn2hdl.edges import canny, filter_agreement, grey, learned, learned_under_budget
 from wnn2hdl.edges.compare import Agreement
 from wnn2hdl.images import list_images, read_rgb
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel, window_codes
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel
 from wnn2hdl.pipeline.training import Progress, pixel_encoder
+from wnn2hdl.tables import code_histogram, window_histogram
 from wnn2hdl.wisard import PixelClassifier
 
 
@@ -34,15 +35,12 @@ def survey(model: WisardModel, folder: Path, progress: Progress) -> Survey:
     Raises:
         InputError: the folder holds no pictures, or one cannot be read.
     """
-    encoder, table = pixel_encoder(model), PixelClassifier(model).table
+    encoder, classifier = pixel_encoder(model), PixelClassifier(model)
     codes = np.zeros(1 << encoder.width, dtype=np.int64)
     windows = np.zeros(WINDOW_CODES, dtype=np.int64)
     for picture in _pictures(folder, progress):
-        image_codes = encoder.codes(picture)
-        codes += np.bincount(image_codes.ravel(), minlength=len(codes))
-        if min(image_codes.shape) >= 3:
-            foreground = table[image_codes] != 0
-            windows += np.bincount(window_codes(foreground).ravel(), minlength=WINDOW_CODES)
+        codes += code_histogram(encoder, [picture])
+        windows += window_histogram([classifier.classify(picture) != 0])
     return Survey(codes, windows)
 
 
