@@ -14,6 +14,7 @@ from wnn2hdl.cli.options import (
     images_option,
     labelled,
     masks_option,
+    palette_option,
     seed_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
@@ -21,6 +22,7 @@ from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir.files import make_folder
 from wnn2hdl.pipeline.budget import Point, measure, pareto_front, train_under_budget
 from wnn2hdl.pipeline.evaluation import circuit_answers, evaluate
 from wnn2hdl.pipeline.training import Progress, pixel_encoder, train
@@ -63,6 +65,7 @@ class Discriminators:
 @app.command("train")
 @images_option
 @masks_option
+@palette_option
 @click.option("--regions", type=file, help="CSV of labelled rectangles: chip,label,x,y,width,height.")
 @click.option("--chips", type=folder, help="Folder of the chips that --regions names.")
 @click.option("--bits", metavar="R7,R6,…", help="Pixel bits to read.  [default: the 4 high bits of R, G, B]")
@@ -92,6 +95,7 @@ class Discriminators:
 def train_command(
     images: Path | None,
     masks: Path | None,
+    palette: Path | None,
     regions: Path | None,
     chips: Path | None,
     max_luts: int | None,
@@ -103,8 +107,10 @@ def train_command(
     **discriminators: Any,
 ) -> None:
     """Train a pixel classifier on labelled images; on embedded landscapes if none are given."""
-    dataset = labelled(images, masks, regions, chips, seed)
+    dataset = labelled(images, masks, regions=regions, chips=chips, palette=palette, seed=seed)
     options = Discriminators(**discriminators)
+    # Before the training, so that a place that cannot be written is told at once.
+    make_folder(output.parent)
     points: tuple[Point, ...] = ()
     with progress() as report:
         if pareto:
@@ -127,9 +133,17 @@ def train_command(
 @click.argument("model", type=click.Path(exists=True, path_type=Path))
 @images_option
 @masks_option
+@palette_option
 @seed_option
 @json_option
-def evaluate_command(model: Path, images: Path | None, masks: Path | None, seed: int, as_json: bool) -> None:
+def evaluate_command(
+    model: Path,
+    images: Path | None,
+    masks: Path | None,
+    palette: Path | None,
+    seed: int,
+    as_json: bool,
+) -> None:
     """Measure MODEL, a model file or a build folder (then its circuit), on labelled images."""
     if model.is_dir():
         design, _, _ = open_build(model)
@@ -137,7 +151,7 @@ def evaluate_command(model: Path, images: Path | None, masks: Path | None, seed:
     else:
         trained = WisardModel.load(model)
         answers = trained.evaluate_all_codes()
-    dataset = labelled(images, masks, None, None, seed)
+    dataset = labelled(images, masks, palette=palette, seed=seed)
     with progress() as report:
         result = evaluate(answers, pixel_encoder(trained), dataset, report)
     data = {

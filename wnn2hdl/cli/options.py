@@ -7,6 +7,7 @@ import click
 
 from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
 from wnn2hdl.errors import InputError
+from wnn2hdl.images import Palette
 
 SAMPLE_IMAGES = 12
 SAMPLE_SIDE = 256
@@ -18,6 +19,9 @@ file = click.Path(dir_okay=False, path_type=Path)
 images_option = click.option("--images", type=folder, help="Folder of pictures; needs --masks.")
 masks_option = click.option(
     "--masks", type=folder, help="Folder of masks of the same stems: 0 forest, else deforested."
+)
+palette_option = click.option(
+    "--palette", type=file, help="JSON of more classes and their colours in the masks, the background first."
 )
 seed_option = click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed.")
 
@@ -37,7 +41,13 @@ class BleachingType(click.ParamType[int | str]):
 
 
 def labelled(
-    images: Path | None, masks: Path | None, regions: Path | None, chips: Path | None, seed: int
+    images: Path | None,
+    masks: Path | None,
+    *,
+    regions: Path | None = None,
+    chips: Path | None = None,
+    palette: Path | None = None,
+    seed: int,
 ) -> Dataset:
     """The labelled images that the options name; the embedded landscapes if they name none.
 
@@ -52,7 +62,9 @@ def labelled(
     if len(given) == 2:
         raise InputError("two sources of labelled pixels", value=" / ".join(given), mend="give one of them")
     if images and masks:
-        return from_masks(images, masks)
+        return from_masks(images, masks, Palette.read(palette) if palette else None)
+    if palette:
+        raise InputError("a palette belongs to masks", value=palette, mend="give --images and --masks too")
     if regions and chips:
         return from_regions(regions, chips, seed=seed)
     return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed)

@@ -149,7 +149,7 @@ def sweep_command(
     plan = grid(recipe, address_bits, rams, trials)
     run = partial(run_distributed, scheduler) if scheduler else run_locally
     with progress() as report:
-        sets = draw(labelled(images, masks, None, None, seed), pixels=pixels, seed=seed, progress=report)
+        sets = draw(labelled(images, masks, seed=seed), pixels=pixels, seed=seed, progress=report)
         if name is not None:
             _write_model(sets, find_trial(plan, where, name), model_file, as_json=as_json)
             return

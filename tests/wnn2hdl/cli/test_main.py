@@ -60,6 +60,22 @@ def test_training_prints_one_json_object_and_nothing_else(folders: tuple[Path, P
     assert json.loads(done.stdout)["images"] == 1
 
 
+def test_more_classes_by_a_palette(folders: tuple[Path, Path], tmp_path: Path) -> None:
+    images, masks = folders
+    colours = np.zeros((8, 8, 3), dtype=np.uint8)
+    colours[:, 2:4], colours[:, 4:] = (255, 0, 0), (0, 0, 255)
+    save(masks / "a.png", colours)
+    palette = tmp_path / "palette.json"
+    palette.write_text(json.dumps({"forest": "#000000", "burnt": "#ff0000", "water": "#0000ff"}))
+    model = tmp_path / "new" / "m.json"
+    done = wnn2hdl(
+        "train", "--images", images, "--masks", masks, "--palette", palette, "--bits", "R7,G7",
+        "--address-bits", 2, "--rams", 1, "--json", "-o", model,
+    )  # fmt: skip
+    assert json.loads(done.stdout)["classes"] == ["forest", "burnt", "water"]
+    assert "more classes" in complaint("evaluate", model, "--images", images, "--masks", masks)
+
+
 def test_garbage_gets_one_line(folders: tuple[Path, Path], tmp_path: Path) -> None:
     images, masks = folders
     model = tmp_path / "m.json"
