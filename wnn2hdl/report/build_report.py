@@ -130,7 +130,7 @@ PUBLISHED = (
     PublishedFigure("block of nine pixel classifiers and an edge filter", 21, 0, _PAPER),
     PublishedFigure("nine-bit match-and-count", 11, None, _PAPER),
     PublishedFigure("Sobel, cited there as [33]", 135, 49, _PAPER),
-    PublishedFigure("Sobel, cited there as [34]", 114, None, _PAPER),
+    PublishedFigure("Sobel, cited there as [34]", 114, 0, _PAPER),
 )
 """What the circuits are compared with; None where the paper gives no figure."""
 
