@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.emit import check as check_manifest
-from wnn2hdl.errors import InputError
+from wnn2hdl.errors import InputError, ModelFileError, ToolError
 from wnn2hdl.ir.files import read_json
 from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import Circuits, circuits_of
@@ -35,7 +35,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
 
     Returns:
         What is wrong, one line each, empty if nothing is; and what the checks found, None where files are
-        missing or changed so that there is nothing sound to check.
+        missing, or changed so that nothing can be checked.
 
     Raises:
         InputError: the folder is no build.
@@ -47,12 +47,21 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
     progress("checking hashes", 1, 1)
     if any("missing" in problem for problem in problems):
         return problems, None
-    design, circuits, report = open_build(folder)
+    try:
+        design, circuits, report = open_build(folder)
+    except ModelFileError as error:
+        return [*problems, error.line()], None
     if (folder / FAILED).exists():
         problems.append("the build is marked as failed")
     if report.get("hashes", {}).get("model") != design.model.digest():
         problems.append(f"{REPORT_FILE} belongs to a build of another model")
-    checked = check(design, circuits, progress)
+    try:
+        checked = check(design, circuits, progress)
+    except ToolError as error:
+        if not problems:
+            raise
+        # A changed file may well be one that no tool can read.
+        return [*problems, error.line()], None
     if checked.failure is not None:
         problems.append(checked.failure)
     for part, result in checked.syntheses.items():

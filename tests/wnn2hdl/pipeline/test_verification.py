@@ -52,9 +52,21 @@ def test_a_changed_model_is_noticed(copy: Path) -> None:
     data = json.loads(path.read_text())
     data["bleaching"] += 1
     path.write_text(json.dumps(data))
+    assert verify_build(copy, silent)[0][0] == "model.json was changed"
     sign_again(copy)
-    with pytest.raises(InputError, match="another model"):
-        verify_build(copy, silent)
+    problems, checked = verify_build(copy, silent)
+    assert len(problems) == 1
+    assert problems[0].startswith("the design was made from another model")
+    assert checked is None
+
+
+def test_verilog_that_no_tool_can_read_is_a_finding(copy: Path) -> None:
+    path = copy / "pixel.v"
+    path.write_text(path.read_text().replace("endmodule", "endmodul", 1))
+    problems, checked = verify_build(copy, silent)
+    assert problems[0] == "pixel.v was changed"
+    assert "syntax error" in problems[1]
+    assert checked is None
 
 
 def test_a_missing_file_is_noticed(copy: Path) -> None:
