@@ -3,12 +3,11 @@
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from wnn2hdl.edges.compare import widened
+from wnn2hdl.edges.evidence import gather
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, window_codes
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter
 
 PATTERNS = 75
 """Patterns in the reference design's edge filter."""
@@ -38,28 +37,11 @@ def learned(
     """
     if not 1 <= count <= MOST_PATTERNS:
         raise InputError("an edge filter has 1 to 510 patterns", value=count)
-    seen = np.zeros(WINDOW_CODES, dtype=np.int64)
-    near = np.zeros(WINDOW_CODES, dtype=np.int64)
-    around = []
-    for binary, edges in pictures:
-        codes = window_codes(binary)
-        seen += np.bincount(codes.ravel(), minlength=WINDOW_CODES)
-        near += np.bincount(codes[widened(edges)], minlength=WINDOW_CODES)
-        around.append(_codes_around(codes, edges))
-    neighbourhoods = np.concatenate(around) if around else np.zeros((0, 9), dtype=np.int64)
-    if not len(neighbourhoods):
-        raise InputError("Canny finds no edge in the pictures", mend="give pictures with more contrast")
+    evidence = gather(pictures)
+    neighbourhoods = np.repeat(evidence.around, evidence.times, axis=0)
     patterns = np.zeros(WINDOW_CODES, dtype=np.bool_)
-    patterns[_choose(seen, near, neighbourhoods, count)] = True
+    patterns[_choose(evidence.seen, evidence.near, neighbourhoods, count)] = True
     return EdgeFilter("learned", patterns)
-
-
-def _codes_around(codes: NDArray[np.int64], edges: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The window codes at and around each edge pixel, ``[edge pixels, 9]``, repetitions replaced by -1."""
-    around = sliding_window_view(codes, (3, 3))[edges[1:-1, 1:-1]].reshape(-1, 9)
-    around = np.sort(around, axis=1)
-    around[:, 1:][around[:, 1:] == around[:, :-1]] = -1
-    return around
 
 
 def _choose(
@@ -74,7 +56,7 @@ def _choose(
     found = found_near = 0
     for _ in range(count):
         # Edge pixels that each code would newly cover.
-        gain = np.bincount(uncovered.ravel() + 1, minlength=WINDOW_CODES + 1)[1:]
+        gain = np.bincount(uncovered.ravel(), minlength=WINDOW_CODES + 1)[:WINDOW_CODES]
         precision = (found_near + near) / np.maximum(found + seen, 1)
         recall = (expected - len(uncovered) + gain) / expected
         f1 = 2 * precision * recall / np.maximum(precision + recall, np.finfo(np.float64).tiny)

@@ -13,7 +13,7 @@ from wnn2hdl.pipeline.circuits import COUNTED, PARTS, SOBEL, Circuits
 from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.simulating import simulate_apart
 from wnn2hdl.pipeline.training import Progress
-from wnn2hdl.synth import Job, Synthesis, synthesise, synthesise_all
+from wnn2hdl.synth import Job, Synthesis, synthesise_all, synthesise_job
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.proof import METHOD, Proof, prove, prove_netlists
 from wnn2hdl.verify.specification import PartName
@@ -58,7 +58,7 @@ def check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
     jobs: dict[str, Callable[[], Any]] = {
         **{f"simulate {half[-1]}": partial(simulate_apart, circuits.verilog.parent, half) for half in halves},
         _PROVE: partial(prove, design.specification, dict.fromkeys(parts, circuits.verilog)),
-        **{name: partial(_synthesise, job) for name, job in synthesis_jobs(design, circuits).items()},
+        **{name: partial(synthesise_job, job) for name, job in synthesis_jobs(design, circuits).items()},
     }
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
@@ -104,10 +104,6 @@ def synthesis_jobs(design: Design, circuits: Circuits) -> dict[str, Job]:
     }
     jobs[SOBEL] = Job(circuits.sobel.read_text(encoding="utf-8"), SOBEL, baseline=True)
     return jobs
-
-
-def _synthesise(job: Job) -> Synthesis:
-    return synthesise(job.verilog, job.top, baseline=job.baseline)
 
 
 def _prove_netlists(

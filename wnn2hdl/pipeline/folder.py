@@ -6,11 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.files import make_folder
-
-MANIFEST = "manifest.json"
-"""The file that tells a build folder of ours from any other folder."""
 
 REPORT_FILE = "report.json"
 REPORT_PAGE = "report.md"
@@ -56,5 +54,5 @@ def staged(target: Path) -> Iterator[Path]:
 
 
 def is_build(folder: Path) -> bool:
-    """Whether a folder was written by `compile`."""
-    return (folder / MANIFEST).is_file()
+    """Whether a folder was written by `compile`: its manifest tells it from any other."""
+    return (folder / MANIFEST_NAME).is_file()

@@ -20,8 +20,7 @@ def open_build(folder: Path) -> tuple[Design, Circuits, dict[str, Any]]:
         InputError: the folder is no build.
         ModelFileError: one of its files is missing or damaged.
     """
-    if not is_build(folder):
-        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")
+    _require_build(folder)
     design = Design.load(folder)
     return design, circuits_of(design, folder), read_json(folder / REPORT_FILE, "a report")
 
@@ -41,8 +40,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         InputError: the folder is no build.
         ToolError: an outside program is missing or failed.
     """
-    if not is_build(folder):
-        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")
+    _require_build(folder)
     problems = check_manifest(folder)
     progress("checking hashes", 1, 1)
     if any("missing" in problem for problem in problems):
@@ -71,3 +69,8 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
                 f"{REPORT_FILE} says that {part} takes {told} LUTs; it takes {result.resources.luts}"
             )
     return problems, checked
+
+
+def _require_build(folder: Path) -> None:
+    if not is_build(folder):
+        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")

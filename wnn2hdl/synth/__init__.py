@@ -1,7 +1,7 @@
 """Yosys as the measuring instrument: Verilog in; resource counts, logic delay and the mapped netlist out."""
 
 from wnn2hdl.synth.devices import XC7Z020, Device, Utilisation, utilisation
-from wnn2hdl.synth.flow import OPTIONS, Job, Synthesis, synthesise, synthesise_all
+from wnn2hdl.synth.flow import OPTIONS, Job, Synthesis, synthesise, synthesise_all, synthesise_job
 from wnn2hdl.synth.resources import Resources, count_cells
 
 __all__ = [
@@ -15,5 +15,6 @@ __all__ = [
     "count_cells",
     "synthesise",
     "synthesise_all",
+    "synthesise_job",
     "utilisation",
 ]

@@ -120,14 +120,15 @@ def synthesise_all(
     find_yosys()
     names = list(jobs)
     results: dict[str, Synthesis] = {}
-    for position, result in in_parallel(_synthesise_job, jobs.values()):
+    for position, result in in_parallel(synthesise_job, jobs.values()):
         results[names[position]] = result
         if done is not None:
             done(names[position])
     return {name: results[name] for name in names}
 
 
-def _synthesise_job(job: Job) -> Synthesis:
+def synthesise_job(job: Job) -> Synthesis:
+    """`synthesise` for a job."""
     return synthesise(job.verilog, job.top, baseline=job.baseline)
 
 

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import pytest
 
+from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError
-from wnn2hdl.pipeline.folder import MANIFEST, staged
+from wnn2hdl.pipeline.folder import staged
 
 
 def test_the_folder_appears_when_all_is_written(tmp_path: Path) -> None:
     with staged(tmp_path / "new" / "build") as staging:
-        (staging / MANIFEST).write_text("{}")
+        (staging / MANIFEST_NAME).write_text("{}")
         assert not (tmp_path / "new" / "build").exists()
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["build"]
 
@@ -20,25 +21,25 @@ def test_nothing_is_left_of_what_failed_and_the_earlier_build_stays(
     tmp_path: Path, error: type[BaseException]
 ) -> None:
     with staged(tmp_path / "build") as staging:
-        (staging / MANIFEST).write_text("first")
+        (staging / MANIFEST_NAME).write_text("first")
 
     def fail() -> None:
         with staged(tmp_path / "build") as staging:
-            (staging / MANIFEST).write_text("second")
+            (staging / MANIFEST_NAME).write_text("second")
             raise error
 
     with pytest.raises(error):
         fail()
     assert [path.name for path in tmp_path.iterdir()] == ["build"]
-    assert (tmp_path / "build" / MANIFEST).read_text() == "first"
+    assert (tmp_path / "build" / MANIFEST_NAME).read_text() == "first"
 
 
 def test_an_earlier_build_is_replaced_whole(tmp_path: Path) -> None:
     for name in ("old", "new"):
         with staged(tmp_path / "build") as staging:
-            (staging / MANIFEST).write_text(name)
+            (staging / MANIFEST_NAME).write_text(name)
             (staging / name).touch()
-    assert {path.name for path in (tmp_path / "build").iterdir()} == {MANIFEST, "new"}
+    assert {path.name for path in (tmp_path / "build").iterdir()} == {MANIFEST_NAME, "new"}
 
 
 def test_what_is_no_build_is_not_touched(tmp_path: Path) -> None:
