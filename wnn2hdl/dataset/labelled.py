@@ -20,11 +20,32 @@ class LabelledImage:
         name: the image's file name, or the seed it was generated from.
         pixels: uint8 ``[n, 3]``: red, green, blue.
         labels: uint8 ``[n]``: class indices.
+        shape: height and width of the image if its pixels are all here, row by row; None if only some are.
     """
 
     name: str
     pixels: NDArray[np.uint8]
     labels: NDArray[np.uint8]
+    shape: tuple[int, int] | None = None
+
+    @property
+    def picture(self) -> NDArray[np.uint8]:
+        """The whole image, uint8 ``[height, width, 3]``; raises InputError if only some pixels are labelled."""
+        return self.pixels.reshape(*self._whole(), 3)
+
+    @property
+    def label_picture(self) -> NDArray[np.uint8]:
+        """The labels in the place of their pixels, uint8 ``[height, width]``; raises as `picture` does."""
+        return self.labels.reshape(self._whole())
+
+    def _whole(self) -> tuple[int, int]:
+        if self.shape is None:
+            raise InputError(
+                "only some pixels of the image are labelled, and neighbours are needed",
+                value=self.name,
+                mend="give pictures with masks",
+            )
+        return self.shape
 
 
 @dataclass(frozen=True, eq=False)

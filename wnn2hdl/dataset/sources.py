@@ -31,7 +31,7 @@ def from_masks(images: Path, masks: Path, palette: Palette | None = None) -> Dat
         rgb = read_rgb(picture)
         shape = (rgb.shape[0], rgb.shape[1])
         labels = read_labels(mask, shape, palette) if palette else read_mask(mask, shape)
-        return LabelledImage(name, rgb.reshape(-1, 3), labels.ravel())
+        return LabelledImage(name, rgb.reshape(-1, 3), labels.ravel(), shape)
 
     return Dataset(palette.names if palette else CLASSES, tuple(sorted(pairs)), load)
 
@@ -55,6 +55,6 @@ def from_samples(count: int, side: int, *, seed: int, every_kind: bool = False) 
     def load(name: str) -> LabelledImage:
         scene = landscape(side, side, seeds[name])
         labels = scene.labels if every_kind else scene.deforested.astype(np.uint8)
-        return LabelledImage(name, scene.image.reshape(-1, 3), labels.ravel())
+        return LabelledImage(name, scene.image.reshape(-1, 3), labels.ravel(), (side, side))
 
     return Dataset(SAMPLE_CLASSES if every_kind else CLASSES, tuple(sorted(seeds)), load)

@@ -80,17 +80,18 @@ class WisardModel:
         """Share of the addresses that fire, ``[classes, k]``; a RAM at 1 answers yes to everything."""
         return np.asarray((self.counts >= self.bleaching).mean(axis=2))
 
-    def responses(self, bits: ArrayLike) -> NDArray[np.int64]:
+    def responses(self, bits: ArrayLike, threshold: int | None = None) -> NDArray[np.int64]:
         """Firing RAMs of each discriminator.
 
         Args:
             bits: bool ``[samples, encoder.width]``.
+            threshold: a count that makes a RAM fire; `bleaching` if left out.
 
         Returns:
             int64 ``[samples, classes]``, each from 0 to ``rams``.
         """
         flags = np.asarray(bits, dtype=np.bool_)
-        fires = self.counts >= self.bleaching
+        fires = self.counts >= (self.bleaching if threshold is None else threshold)
         result = np.zeros((len(flags), len(self.classes)), dtype=np.int64)
         for group, mapping in enumerate(self.mapping):
             owners = range(len(self.classes)) if len(self.mapping) == 1 else (group,)

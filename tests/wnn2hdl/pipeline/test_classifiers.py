@@ -1,0 +1,60 @@
+"""A model file, a build and a picture give one and the same answer."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wnn2hdl.errors import InputError, ModelFileError
+from wnn2hdl.ir import Thermometer, WisardModel, codes_to_bits
+from wnn2hdl.pipeline.classifiers import familiar_codes, model_classifier, open_classifier
+from wnn2hdl.samples import landscape
+from wnn2hdl.wisard import PixelClassifier
+
+PICTURE = landscape(40, 50, seed=7).image
+
+
+def test_a_model_file_answers_as_the_model(model: WisardModel, tmp_path: Path) -> None:
+    model.save(tmp_path / "model.json")
+    classifier = open_classifier(tmp_path / "model.json")
+    assert classifier.classes == model.classes
+    assert classifier.halo == 0
+    assert np.array_equal(classifier.classify(PICTURE), PixelClassifier(model).classify(PICTURE))
+
+
+def test_a_build_answers_as_its_model_where_it_cares(model: WisardModel, build: Path) -> None:
+    circuit, trained = open_classifier(build), model_classifier(model)
+    cared = circuit.covered(PICTURE)
+    assert cared.mean() > 0.9
+    assert np.array_equal(circuit.classify(PICTURE)[cared], trained.classify(PICTURE)[cared])
+
+
+def test_colours_of_the_training_are_familiar_and_foreign_ones_are_not(model: WisardModel) -> None:
+    classifier = model_classifier(model)
+    assert classifier.covered(landscape(64, 64, seed=1).image).all()
+    violet = np.full((2, 3, 3), (255, 0, 255), dtype=np.uint8)
+    assert not classifier.covered(violet).any()
+
+
+def test_what_was_seen_too_rarely_to_fire_is_familiar_all_the_same(model: WisardModel) -> None:
+    fires_fully = model.responses(codes_to_bits(np.arange(256), 8)) == model.rams
+    familiar = familiar_codes(model)
+    assert model.bleaching > 1
+    assert familiar[fires_fully.any(axis=1)].all()
+    assert familiar.sum() > fires_fully.any(axis=1).sum()
+
+
+def test_what_is_no_model_is_refused(model: WisardModel, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="not a build folder"):
+        open_classifier(tmp_path)
+    with pytest.raises(ModelFileError):
+        open_classifier(tmp_path / "missing.json")
+    features = WisardModel(
+        Thermometer(((0.5, 1.5),)),
+        ("a", "b"),
+        np.array([[[0, 1]]]),
+        np.ones((2, 1, 4), dtype=np.int64),
+        bleaching=1,
+    )
+    with pytest.raises(InputError, match="does not read pixels"):
+        model_classifier(features)
