@@ -30,7 +30,7 @@ class LabelledImage:
 
     @property
     def picture(self) -> NDArray[np.uint8]:
-        """The whole image, uint8 ``[height, width, 3]``; raises InputError if only some pixels are labelled."""
+        """The image, uint8 ``[height, width, 3]``; raises InputError if only some pixels are labelled."""
         return self.pixels.reshape(*self._whole(), 3)
 
     @property

@@ -93,8 +93,9 @@ def model_classifier(model: WisardModel) -> PictureClassifier:
 def familiar_codes(model: WisardModel) -> NDArray[np.bool_]:
     """Codes that the training may have seen, bool ``[2**encoder.width]``.
 
-    A code seen in training has a count in every RAM of its class's discriminator. So a code that misses one in
-    every class was never seen; one that has them all may be new all the same, put together from parts of others.
+    A code seen in training has a count in every RAM of its class's discriminator. So a code that misses one
+    in every class was never seen; one that has them all may be new all the same, put together from parts of
+    others.
     """
     bits = codes_to_bits(np.arange(1 << model.encoder.width), model.encoder.width)
     return np.asarray((model.responses(bits, threshold=1) == model.rams).any(axis=1))
