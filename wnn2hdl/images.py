@@ -98,6 +98,13 @@ class Palette:
             )
         return cls(tuple(entries), tuple(colours))
 
+    def to_json(self) -> dict[str, str]:
+        """The object of a palette file, read back by `read`."""
+        return {
+            name: "#{:02x}{:02x}{:02x}".format(*colour)
+            for name, colour in zip(self.names, self.colours, strict=True)
+        }
+
     def paint(self, labels: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """A picture of class indices: uint8 ``S`` to uint8 ``S + (3,)``."""
         return np.take(np.array(self.colours, dtype=np.uint8), labels, axis=0)

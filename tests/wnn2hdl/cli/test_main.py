@@ -135,3 +135,23 @@ def test_ctrl_c_in_the_middle_leaves_nothing(tmp_path: Path) -> None:
     assert "Traceback" not in errors
     assert errors.splitlines()[-1] == "wnn2hdl: interrupted; nothing half-written was left"
     assert {path.name for path in tmp_path.iterdir()} <= {"m.json", "cache", ".cache"}
+
+
+def test_the_version_names_the_tools_that_decide_the_output() -> None:
+    printed = wnn2hdl("--version").stdout
+    assert printed.startswith("wnn2hdl ")
+    assert all(tool in printed for tool in ("amaranth ", "pyosys ", "pyeda "))
+
+
+def test_the_shell_completes_commands(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("_WNN2HDL_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", "wnn2hdl com")
+    monkeypatch.setenv("COMP_CWORD", "1")
+    done = subprocess.run(
+        [sys.executable, "-c", COMMAND[2].replace("import sys;", "import sys; sys.argv[0] = 'wnn2hdl';")],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert "compile" in done.stdout

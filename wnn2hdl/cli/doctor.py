@@ -1,0 +1,44 @@
+"""`doctor`: which tools are here, which are missing, and how to get them."""
+
+from dataclasses import asdict
+
+from rich.console import Console
+from rich.table import Table
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.output import emit, json_option
+from wnn2hdl.errors import CheckError
+from wnn2hdl.tools.inventory import Part, inventory
+
+
+@app.command("doctor")
+@json_option
+def doctor_command(as_json: bool) -> None:
+    """Tell which tools are found, which are missing, and how to install them.
+
+    Exit status 1 if one is missing that compiling cannot do without; the others are optional.
+
+    \b
+    Examples:
+      wnn2hdl doctor
+      wnn2hdl doctor --json | jq '.parts[] | select(.found == null) | .mend'
+    """
+    parts = tuple(inventory())
+    lacking = [part for part in parts if part.needed and part.found is None]
+    data = {"healthy": not lacking, "parts": [asdict(part) for part in parts]}
+    emit(data, _table(parts), as_json=as_json)
+    if lacking:
+        raise CheckError(
+            "a tool is missing that compiling needs", value=lacking[0].name, mend=lacking[0].mend or ""
+        )
+
+
+def _table(parts: tuple[Part, ...]) -> str:
+    table = Table("", "tool", "what for", "found, or how to get it", box=None, header_style="bold")
+    for part in parts:
+        mark = "ok" if part.found else "MISSING" if part.needed else "-"
+        table.add_row(mark, part.name, part.purpose, part.found or f"{part.fault}; {part.mend}")
+    console = Console(width=140, markup=False)
+    with console.capture() as captured:
+        console.print(table)
+    return captured.get().rstrip()
