@@ -9,7 +9,7 @@ EXTRAS ?=
 comma := ,
 STAMP := $(VENV)/.installed$(subst $(comma),-,$(EXTRAS))
 
-.PHONY: demo test lint types layers check clean
+.PHONY: demo test lint types layers docs check clean
 
 demo: $(STAMP)
 	$(BIN)/wnn2hdl demo
@@ -27,7 +27,14 @@ types: $(STAMP)
 layers: $(STAMP)
 	$(BIN)/lint-imports
 
-check: lint types layers test
+# Pages with their examples run and their links looked up; a warning is an error.
+docs: $(STAMP)
+	$(BIN)/python -m pip install --quiet --group docs
+	$(BIN)/sphinx-build --quiet --fail-on-warning --builder doctest docs build/docs/doctest
+	$(BIN)/sphinx-build --quiet --fail-on-warning --builder linkcheck docs build/docs/links
+	$(BIN)/sphinx-build --quiet --fail-on-warning --builder html docs build/docs/html
+
+check: lint types layers docs test
 
 $(STAMP): pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)

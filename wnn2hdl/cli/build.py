@@ -81,7 +81,14 @@ def compile_command(
     as_json: bool,
     **choices: Any,
 ) -> None:
-    """Compile MODEL to Verilog, prove that it equals the model, and count its LUTs."""
+    """Compile MODEL to Verilog, prove that it equals the model, and count its LUTs.
+
+    \b
+    Examples:
+      wnn2hdl compile model.json -o build/mine
+      wnn2hdl compile model.json --mode domain --care IMAGES -o build/mine
+      wnn2hdl compile model.json --edges learned --edge-images IMAGES --edge-luts 2 -o build/mine
+    """
     options = CompileOptions(care_minimum=choices.pop("care_min"), **choices)
     if (test_images is None) != (test_masks is None):
         raise InputError(

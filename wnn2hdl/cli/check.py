@@ -24,7 +24,13 @@ build_argument = click.argument("build", type=folder)
 @build_argument
 @json_option
 def verify_command(build: Path, as_json: bool) -> None:
-    """Check BUILD from its files alone: hashes, simulation, proof, LUT counts."""
+    """Check BUILD from its files alone: hashes, simulation, proof, LUT counts.
+
+    \b
+    Examples:
+      wnn2hdl verify build/mine
+      wnn2hdl verify build/mine --json | jq .problems
+    """
     with progress() as report:
         problems, checked = verify_build(build, report)
     data = {
@@ -54,7 +60,14 @@ def verify_command(build: Path, as_json: bool) -> None:
 def simulate_command(
     build: Path, image: Path, simulator: SimulatorName, vcd: Path | None, output: Path | None, as_json: bool
 ) -> None:
-    """Run the block of BUILD over every 3x3 window of a picture and compare each output bit."""
+    """Run the block of BUILD over every 3x3 window of a picture and compare each output bit.
+
+    \b
+    Examples:
+      wnn2hdl simulate build/mine --image photo.png
+      wnn2hdl simulate build/mine --image photo.png --simulator verilator -o build/pictures
+      wnn2hdl simulate build/mine --image photo.png --vcd build/waves.vcd
+    """
     with progress() as report:
         result = play(build, image, simulator, report, vcd)
     output = output or build / "simulation"
@@ -86,7 +99,13 @@ def simulate_command(
 @build_argument
 @json_option
 def synth_command(build: Path, as_json: bool) -> None:
-    """Count the LUTs of BUILD again, from its Verilog."""
+    """Count the LUTs of BUILD again, from its Verilog.
+
+    \b
+    Examples:
+      wnn2hdl synth build/mine
+      wnn2hdl synth build/mine --json | jq .parts.block.luts
+    """
     design, circuits, _ = open_build(build)
     with progress() as report:
         syntheses = synthesise_parts(design, circuits, report)

@@ -137,6 +137,12 @@ def sweep_command(
 
     Results are kept as they come: the same command goes on where a killed one stopped. Half of the images
     are trained on, the others are held out.
+
+    \b
+    Examples:
+      wnn2hdl sweep --images IMAGES --masks MASKS -o build/sweep
+      wnn2hdl sweep --n 3..5 --k 8..16 --trials 20 -o build/sweep
+      wnn2hdl sweep --scheduler tcp://host:8786 --images IMAGES --masks MASKS -o build/sweep
     """
     where, model_file = _places(output, results, best=best, name=name)
     encoder = parse_bits(bits) if bits else high_bits()
