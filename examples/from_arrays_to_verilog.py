@@ -1,6 +1,6 @@
 """The compiler from Python: a classifier from arrays of pixels, its table, its LUTs and a proved build.
 
-Run it as ``python examples/from_arrays_to_verilog.py [FOLDER]``; the build goes to ``build/example`` by default.
+Run it as ``python examples/from_arrays_to_verilog.py [FOLDER]``; the build goes to ``build/example``.
 """
 
 import sys
@@ -34,15 +34,13 @@ def main(folder: Path) -> None:
     print(f"{model.rams} RAMs of {model.address_bits} address bits, {model.saturation.mean():.0%} set")
 
     # The whole network as one table; codes that never occur are free.
-    table = pixel_table(model, care=histogram.any(axis=0))
+    table = pixel_table(model, care=histogram.sum(axis=0) > 0)
     cover, network = espresso(table).cover, map_luts(table).network
     print(f"{table.care.sum()} of {len(table.care)} codes occur")
     print(f"{len(cover.cubes)} cubes, {len(network.cells)} cells a pixel")
 
     # A build folder: Verilog, testbench, proof, counts.
-    build = compile_model(
-        model, folder, CompileOptions(target="pixel"), progress=lambda step, done, total: None
-    )
+    build = compile_model(model, folder, CompileOptions(target="pixel"), lambda *_: None)
     print(f"pixel: {build.report['parts']['pixel']['luts']} LUTs, {build.report['proof']['status']}")
 
     other = landscape(256, 256, seed=2)

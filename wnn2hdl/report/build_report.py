@@ -87,10 +87,35 @@ class Care:
     Attributes:
         codes: how many pixel codes are cared for: all of them in exact mode.
         coverage: the share of other imagery's pixels with such a code, 0 to 1; None if not measured.
+        of: how many pixel codes there are.
     """
 
     codes: int | None = None
     coverage: float | None = None
+    of: int | None = None
+
+
+@dataclass(frozen=True)
+class ModelFigures:
+    """The trained network that was compiled.
+
+    Attributes:
+        classes: class names, the background first.
+        address_bits: n, of each RAM.
+        rams: k, of each discriminator.
+        bits: names of the input bits, code bit 0 first.
+        bleaching: the threshold.
+        saturation: for each class and RAM the share of its addresses that fire, 0 to 1.
+        training: what the model file notes about its training.
+    """
+
+    classes: tuple[str, ...]
+    address_bits: int
+    rams: int
+    bits: tuple[str, ...]
+    bleaching: int
+    saturation: tuple[tuple[float, ...], ...]
+    training: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -153,6 +178,9 @@ class BuildReport:
         edges: the edge filter.
         accuracy: of the circuit, 0 to 1, on labelled pixels; None if there were none.
         model_accuracy: of the model on the same pixels.
+        confusion: those pixels by true class (rows) and the circuit's answer (columns).
+        model: the network that was compiled.
+        command: what compiles the model file of the build folder again, run beside that folder.
         options: the options of the command that are part of the result.
         hashes: SHA-256 of files by name, in hexadecimal.
         tools: versions of programs by name.
@@ -172,6 +200,9 @@ class BuildReport:
     edges: EdgeFigures = EdgeFigures()
     accuracy: float | None = None
     model_accuracy: float | None = None
+    confusion: tuple[tuple[int, ...], ...] | None = None
+    model: ModelFigures | None = None
+    command: str | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     hashes: Mapping[str, str] = field(default_factory=dict)
     tools: Mapping[str, str] = field(default_factory=dict)
