@@ -266,9 +266,14 @@ def write_png(path: Path, array: NDArray[np.uint8] | NDArray[np.bool_]) -> None:
     Raises:
         InputError: the folder does not exist or cannot be written.
     """
+    write_bytes(path, png_bytes(array))
+
+
+def png_bytes(array: NDArray[np.uint8] | NDArray[np.bool_]) -> bytes:
+    """What `write_png` writes."""
     stream = io.BytesIO()
     Image.fromarray(array).save(stream, format="PNG")
-    write_bytes(path, stream.getvalue())
+    return stream.getvalue()
 
 
 @contextmanager

@@ -1,0 +1,67 @@
+"""Which bands of a raster are red, green and blue: what the file states or the user says, never a guess."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from wnn2hdl.errors import InputError
+
+_COLOURS = ("red", "green", "blue")
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Bands to read.
+
+    Attributes:
+        indexes: band numbers from 1: of red, green and blue, or of the one band that stands for all three.
+        palette: whether that one band holds indices of the file's colour table.
+        note: what had to be assumed, for the summary; empty if nothing.
+    """
+
+    indexes: tuple[int, ...]
+    palette: bool = False
+    note: str = ""
+
+
+def choose_channels(
+    path: Path, interpretations: tuple[str, ...], bands: tuple[int, ...] | None = None
+) -> Channels:
+    """Choose the bands.
+
+    Args:
+        path: the file, for errors.
+        interpretations: GDAL's colour interpretation of each band: ``red``, ``gray``, ``undefined`` …
+        bands: the user's choice: three bands, or one.
+
+    Raises:
+        InputError: the user names bands that do not exist, or the file does not say which bands to take.
+    """
+    count = len(interpretations)
+    if bands is not None:
+        _check_choice(path, bands, count)
+        return Channels(bands, palette=len(bands) == 1 and interpretations[bands[0] - 1] == "palette")
+    if all(interpretations.count(colour) == 1 for colour in _COLOURS):
+        return Channels(tuple(interpretations.index(colour) + 1 for colour in _COLOURS))
+    opaque = tuple(name for name in interpretations if name != "alpha")
+    if len(opaque) == 1 and interpretations[0] != "alpha":
+        return Channels((1,), palette=opaque[0] == "palette")
+    if count == 3 and set(interpretations) <= {"gray", "undefined"}:
+        return Channels((1, 2, 3), note="the file does not name its three bands; taken as red, green, blue")
+    raise InputError(
+        f"the file does not say which of its {count} bands are red, green and blue",
+        value=f"{path} ({', '.join(interpretations)})",
+        mend="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
+    )
+
+
+def _check_choice(path: Path, bands: tuple[int, ...], count: int) -> None:
+    if len(bands) not in (1, 3):
+        raise InputError(
+            "one band or three are read", value=",".join(map(str, bands)), mend="as in --bands 3,2,1"
+        )
+    if not all(1 <= band <= count for band in bands):
+        raise InputError(
+            f"the file has bands 1 to {count}",
+            value=f"{path} (asked for {','.join(map(str, bands))})",
+            mend="name others with --bands",
+        )
