@@ -1,5 +1,6 @@
-"""What a build costs and how it was checked: values to `report.json`, and that to Markdown for a person."""
+"""What a build costs and how it was checked: values to `report.json`, that to pages."""
 
+from wnn2hdl.report.baseline import Recorded, read_baseline, write_baseline
 from wnn2hdl.report.build_report import (
     PUBLISHED,
     REPORT_VERSION,
@@ -14,20 +15,41 @@ from wnn2hdl.report.build_report import (
     PublishedFigure,
     report_dict,
 )
+from wnn2hdl.report.gate import Check, Limits, run_gate
+from wnn2hdl.report.gate_formats import gate_json, gate_junit, gate_markdown
+from wnn2hdl.report.index_page import Entry, Exhibit, index_page
 from wnn2hdl.report.markdown import report_markdown
+from wnn2hdl.report.page import Picture, build_page, percent
+from wnn2hdl.report.schemas import check_report
 
 __all__ = [
     "PUBLISHED",
     "REPORT_VERSION",
     "BuildReport",
     "Care",
+    "Check",
     "EdgeFigures",
+    "Entry",
+    "Exhibit",
+    "Limits",
     "Minimised",
     "ModelFigures",
     "PartFigures",
     "Parts",
+    "Picture",
     "Proof",
     "PublishedFigure",
+    "Recorded",
+    "build_page",
+    "check_report",
+    "gate_json",
+    "gate_junit",
+    "gate_markdown",
+    "index_page",
+    "percent",
+    "read_baseline",
     "report_dict",
     "report_markdown",
+    "run_gate",
+    "write_baseline",
 ]

@@ -45,6 +45,7 @@ class Parts:
     edge: PartFigures = PartFigures()
     block: PartFigures = PartFigures()
     match: PartFigures = PartFigures()
+    neighbourhood: PartFigures = PartFigures()
     sobel: PartFigures = PartFigures()
 
 
@@ -166,7 +167,7 @@ class BuildReport:
 
     Attributes:
         name: of the build.
-        target: ``block``, ``pixel``, ``edge`` or ``match``.
+        target: ``block``, ``pixel``, ``edge``, ``match`` or ``neighbourhood``.
         mode: ``exact`` or ``domain``.
         parts: what each part costs.
         count: the command by which the parts were counted.

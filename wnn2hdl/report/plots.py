@@ -4,7 +4,6 @@ import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.ir.files import write_bytes
 
 
@@ -22,17 +21,13 @@ def plot_pareto(
         The two files written: PNG and SVG. The same points give the same bytes.
 
     Raises:
-        ExtraMissingError: Matplotlib is not installed.
         InputError: the folder does not exist or cannot be written.
     """
-    try:
-        from matplotlib import rc_context
-        from matplotlib.figure import Figure
-        from matplotlib.ticker import ScalarFormatter
-    except ImportError as error:
-        raise ExtraMissingError(
-            "plots need Matplotlib", mend="install it with: pip install 'wnn2hdl[plot]'"
-        ) from error
+    # Not at the top: commands that draw nothing need not wait for it.
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import ScalarFormatter
+
     with rc_context({"svg.hashsalt": "wnn2hdl"}):
         figure = Figure(figsize=(6.4, 4.0), layout="constrained")
         axes = figure.add_subplot()

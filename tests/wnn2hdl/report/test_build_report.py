@@ -18,7 +18,7 @@ KEYS = ["luts", "inv", "muxf7", "muxf8", "carry4", "srl", "ffs", "bram36", "dsp"
 
 def test_every_part_has_every_figure_and_what_was_not_measured_is_null() -> None:
     parts = report_dict(BuildReport("b", "pixel", "exact", Parts(pixel=PartFigures(luts=1, inv=0))))["parts"]
-    assert list(parts) == ["pixel", "edge", "block", "match", "sobel"]
+    assert list(parts) == ["pixel", "edge", "block", "match", "neighbourhood", "sobel"]
     assert all(list(figures) == KEYS for figures in parts.values())
     assert parts["pixel"] == dict.fromkeys(KEYS) | {"luts": 1, "inv": 0}
     assert parts["block"] == dict.fromkeys(KEYS)
@@ -41,7 +41,7 @@ def test_the_keys_that_others_rely_on() -> None:
     assert report["version"] == REPORT_VERSION
     assert report["mode"] == "domain"
     assert report["proof"] == {"status": "proved", "method": "SAT", "seconds": 0.5}
-    assert report["care"] == {"codes": 120, "coverage": 0.98}
+    assert report["care"] == {"codes": 120, "coverage": 0.98, "of": None}
     assert report["accuracy"] == 0.9
     assert report["minimised"]["pixel"]["cubes_after"] == 3
     assert report["tools"] == {"yosys": "0.70"}

@@ -1,0 +1,229 @@
+"""The page of a build tells what report.json tells, and nothing else."""
+
+import json
+import re
+from html.parser import HTMLParser
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from wnn2hdl.ir import LutNetwork
+from wnn2hdl.report.page import Picture, build_page, form, percent
+
+VOID = {"meta", "link", "img", "input", "br"}
+
+
+class Outline(HTMLParser):
+    """Elements with their attributes, text of the figures, and whether all that is opened is closed."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.stack: list[tuple[str, dict[str, str | None]]] = []
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.figures: dict[str, set[tuple[str, str]]] = {}
+        self.feed(page)
+        assert self.stack == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.stack.append((tag, dict(attrs)))
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.stack.pop()[0] == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.stack and self.stack[-1][0] == "data":
+            attributes = self.stack[-1][1]
+            key, value = attributes["data-key"], attributes["value"]
+            assert key is not None
+            assert value is not None
+            self.figures.setdefault(key, set()).add((value, data))
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def at(report: Any, key: str) -> Any:
+    for step in key.split("."):
+        report = report[int(step)] if isinstance(report, list) else report[step]
+    return report
+
+
+def test_every_figure_is_the_one_at_its_path(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
+    figures = Outline(build_page(report, networks)).figures
+    for key, told in figures.items():
+        assert {json.loads(value) for value, _ in told} == {at(report, key)}, key
+    assert {"parts.block.luts", "parts.sobel.luts", "published.0.luts", "accuracy", "care.coverage"} <= set(
+        figures
+    )
+    assert {"confusion.0.1", "minimised.pixel.cubes_after", "model.bleaching", "tools.pyosys"} <= set(figures)
+    assert figures["parts.block.luts"] == {("19", "19")}
+    assert figures["confusion.0.0"] == {("130900", "130,900")}
+    assert figures["accuracy"] == {("0.9165", "91.65 %")}
+
+
+def test_saturation_of_every_ram_is_drawn(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
+    strips = [x for x in Outline(build_page(report, networks)).all("span") if "data-key" in x]
+    assert [float(str(x["data-value"])) for x in strips] == [0.25, 0.5, 1.0, 0.0, 0.75, 0.5]
+    assert [x.get("class") for x in strips] == [None, None, "full", None, None, None]
+
+
+def test_it_needs_nothing_from_anywhere(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
+    picture = Picture("Input", "A picture", b"\x89PNG", 4, 4)
+    page = build_page(report, networks, [picture], [("forest", "#165c2c")])
+    outline = Outline(page)
+    places = [x.get(key) or "" for _, x in outline.elements for key in ("src", "href", "xlink:href")]
+    assert all(place == "" or place.startswith(("data:", "#")) for place in places)
+    assert not re.search(r"url\((?!#)|@import", page)
+    assert [x["alt"] for x in outline.all("img")] == ["A picture"]
+
+
+def test_it_can_be_used_without_seeing_or_pointing(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    page = build_page(report, networks)
+    outline = Outline(page)
+    tags = [tag for tag, _ in outline.elements]
+    assert [tags.count(tag) for tag in ("header", "main", "footer", "h1", "nav")] == [1, 1, 1, 1, 1]
+    assert tags.count("table") == tags.count("caption")
+    assert outline.all("html") == [{"lang": "en"}]
+    ids = {x["id"] for _, x in outline.elements if "id" in x}
+    for _, x in outline.elements:
+        for key in ("aria-labelledby", "aria-controls"):
+            assert x.get(key) is None or x[key] in ids
+    cells = [x for x in outline.all("g") if (x.get("class") or "").startswith("cell")]
+    assert [x["tabindex"] for x in cells] == ["0"] * 4
+    assert "LUT2 t0: R7 & G7, INIT 4'h8" in {x["aria-label"] for x in cells}
+    assert "MUXF7 t2: t2 = G7 ? t1 : t0" in {x["aria-label"] for x in cells}
+    for x in outline.all("svg"):
+        assert x["role"] in ("img", "group")
+        assert x["aria-label"]
+    levels = [int(tag[1]) for tag in tags if re.fullmatch(r"h[1-6]", tag)]
+    assert all(b - a <= 1 for a, b in pairwise(levels))
+
+
+def test_no_id_occurs_twice(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
+    ids = [x["id"] for _, x in Outline(build_page(report, networks)).elements if "id" in x]
+    assert len(ids) == len(set(ids))
+
+
+def test_parts_that_were_not_measured_are_neither_listed_nor_drawn(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    for part in ("edge", "block", "match"):
+        report["parts"][part] = dict.fromkeys(report["parts"][part])
+    report |= {"target": "pixel", "utilisation": {}}
+    page = build_page(report, networks)
+    assert "Schematic of pixel" in page
+    assert "Schematic of edge" not in page
+    assert 'class="overview"' not in page
+    assert "parts.edge.luts" not in Outline(page).figures
+
+
+def test_a_part_of_several_networks_shows_them_all(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    for part in ("pixel", "edge", "block", "match"):
+        report["parts"][part] = dict.fromkeys(report["parts"][part])
+    report["parts"]["neighbourhood"] = report["parts"]["sobel"]
+    report["edges"] = dict.fromkeys(report["edges"])
+    several = {"tap0": networks["edge"], "combiner": networks["pixel"]}
+    page = build_page(report | {"target": "neighbourhood", "utilisation": {}}, several)
+    assert "Schematic of tap0" in page
+    assert "Schematic of combiner" in page
+    assert "LUTs of the neighbourhood" in page
+    assert "Edge patterns" not in page
+
+
+def test_a_report_without_images_model_and_tables_has_a_page(report: dict[str, Any]) -> None:
+    for key in ("accuracy", "model_accuracy", "confusion", "model", "command"):
+        report[key] = None
+    report |= {"minimised": {}, "utilisation": {}, "options": {}}
+    page = build_page(report, {})
+    assert Outline(page).figures["accuracy"] == {("null", "n/a")}
+    assert "None" not in page
+
+
+def test_limits_are_stated(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
+    page = build_page(report, networks)
+    assert "Yosys is not Vivado" in page
+    assert "Domain mode." in page
+    assert "Domain mode." not in build_page(report | {"mode": "exact"}, networks)
+    assert "This build failed" not in page
+    report["proof"]["status"] = "failed"
+    assert "This build failed" in build_page(report, networks)
+
+
+def test_texts_of_others_are_escaped(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
+    hostile = "<img src=x onerror=alert(1)>"
+    report["name"] = hostile
+    report["model"]["classes"] = [hostile, "b"]
+    report["model"]["training"] = {"note": hostile}
+    report["options"]["care"] = hostile
+    picture = Picture(hostile, hostile, b"", 1, 1)
+    page = build_page(report, networks, [picture], [(hostile, "#fff")])
+    assert hostile not in page
+    assert "&lt;img src=x onerror=alert(1)&gt;" in page
+    assert "'&lt;img src=x onerror=alert(1)&gt;'" in page.replace("&#39;", "'")
+
+
+def test_the_same_report_gives_the_same_bytes(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    assert build_page(report, networks) == build_page(report, networks)
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "text"),
+    [
+        (None, "percent", "n/a"),
+        (0.9165, "percent", "91.65 %"),
+        (0.0357142, "points", "0.036 %"),
+        (0.0, "points", "0 %"),
+        (1400, "ps", "1,400 ps"),
+        (0.5, "seconds", "0.50 s"),
+        (262144, "count", "262,144"),
+        (0.5, "count", "0.5"),
+        ("0.70", "text", "0.70"),
+        (None, "text", "n/a"),
+    ],
+)
+def test_figures_as_a_person_reads_them(value: Any, kind: str, text: str) -> None:
+    assert form(value, kind) == text
+
+
+@given(st.integers(1, 10**8), st.integers(0, 10**8))
+def test_a_share_is_all_or_nothing_only_if_it_is(total: int, part: int) -> None:
+    part = min(part, total)
+    shown = float(percent(part / total).removesuffix(" %"))
+    assert (shown == 0) == (part == 0)
+    assert (shown == 100) == (part == total)
+
+
+def test_notes_of_the_training_are_told_whatever_they_are(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    report["model"]["training"] = {
+        "images": [f"i{x}" for x in range(12)],
+        "cascade": [["R7", "G6"]],
+        "search": {"folds": 5, "best": None},
+        "share": 0.25,
+        "shuffled": True,
+    }
+    page = build_page(report, networks)
+    for text in ("12: i0 … i11", "R7, G6", "folds 5, best n/a", "0.25", "True"):
+        assert f"<td>{text}</td>" in page
+
+
+def test_a_circuit_of_wires_alone_has_a_drawing_without_luts(report: dict[str, Any]) -> None:
+    wires = LutNetwork(("R7",), (), (("class_bit0", "R7"), ("class_bit1", "1")))
+    page = build_page(report, {"pixel": wires})
+    assert "Schematic of pixel: inputs 1, cells 0, outputs 2" in page
+    assert "There is no look-up table" in page

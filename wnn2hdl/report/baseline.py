@@ -1,0 +1,74 @@
+"""The baseline of the gate: what builds cost and how often they were right, in a file beside the code."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.errors import CheckError
+from wnn2hdl.ir.files import read_json, write_json
+from wnn2hdl.report.schemas import check
+
+FORMAT = "wnn2hdl-baseline"
+VERSION = 1
+
+RIVALS = frozenset({"sobel"})
+"""Parts that a build is compared with and that are none of its own."""
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What a baseline holds of a build.
+
+    Attributes:
+        accuracy: of the circuit, 0 to 1; None if it was not measured.
+        luts: of each part that was measured, rivals left out.
+        mode: ``exact`` or ``domain``.
+        target: of the build.
+    """
+
+    accuracy: float | None
+    luts: Mapping[str, int]
+    mode: str
+    target: str
+
+
+def recorded(report: Mapping[str, Any]) -> Recorded:
+    """What a baseline holds of the build of a report."""
+    luts = {
+        part: figures["luts"]
+        for part, figures in sorted(report["parts"].items())
+        if figures["luts"] is not None and part not in RIVALS
+    }
+    return Recorded(report["accuracy"], luts, report["mode"], report["target"])
+
+
+def write_baseline(path: Path, reports: Mapping[str, Mapping[str, Any]]) -> None:
+    """Record builds; the file is sorted, a line a figure, so that a change shows in a diff.
+
+    Args:
+        path: the file.
+        reports: the objects of `report.json` by the name of the build.
+
+    Raises:
+        CheckError: a build is not proved: what may be wrong is nothing to measure others by.
+        InputError: the file cannot be written.
+    """
+    for name, report in reports.items():
+        if report["proof"]["status"] != "proved":
+            raise CheckError(
+                "a build that is not proved makes no baseline", value=name, mend="compile it again"
+            )
+    builds = {name: asdict(recorded(report)) for name, report in sorted(reports.items())}
+    write_json(path, {"format": FORMAT, "version": VERSION, "builds": builds})
+
+
+def read_baseline(path: Path) -> dict[str, Recorded]:
+    """Read what `write_baseline` wrote, by the name of the build.
+
+    Raises:
+        ModelFileError: the file is missing, damaged, of another version or no baseline.
+    """
+    data = read_json(path, "a baseline")
+    check(data, "baseline", path, "write it again with --write-baseline")
+    return {name: Recorded(**build) for name, build in data["builds"].items()}

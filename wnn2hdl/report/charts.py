@@ -1,0 +1,195 @@
+"""Charts as SVG that takes its colours from the page, so that one drawing serves light and dark."""
+
+import io
+import re
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+INK, MUTED, RULE, ACCENT, PAPER = "#000001", "#000002", "#000003", "#000004", "#000005"
+"""Colours that stand for the page's own while Matplotlib draws."""
+
+_VARIABLES = {INK: "--ink", MUTED: "--muted", RULE: "--rule", ACCENT: "--accent", PAPER: "--paper"}
+
+_WIDTH = 11.0
+_BAR = 0.34
+
+
+def lut_bars(report: Mapping[str, Any]) -> Markup:
+    """LUTs of each measured part, the Sobel baseline among them, and below them what was published.
+
+    Measured bars are filled; published ones are outlined, with dashes, under their own heading.
+
+    Args:
+        report: the object of `report.json`.
+    """
+    measured = [
+        (part, figures["luts"]) for part, figures in report["parts"].items() if figures["luts"] is not None
+    ]
+    published = [(figure["what"], figure["luts"]) for figure in report["published"]]
+    rows = [*measured, *published]
+
+    def paint(axes: "Axes") -> None:
+        places = [i + (i >= len(measured)) * 0.9 for i in range(len(rows))]
+        for place, (name, luts) in zip(places, measured, strict=False):
+            axes.barh(place, luts, height=0.62, color=MUTED if name == "sobel" else ACCENT)
+        for place, (_, luts) in zip(places[len(measured) :], published, strict=True):
+            axes.barh(
+                place,
+                luts,
+                height=0.62,
+                facecolor="none",
+                edgecolor=MUTED,
+                linestyle=(0, (3, 2)),
+                linewidth=1,
+            )
+        most = max(luts for _, luts in rows)
+        for place, (_, luts) in zip(places, rows, strict=True):
+            axes.text(luts + most / 80, place, f"{luts:,}", va="center", color=INK, fontweight="bold")
+        axes.set_yticks(places, [_short(name) for name, _ in rows])
+        axes.set_ylim(places[-1] + 0.6, -0.6)
+        axes.set_xlim(0, most * 1.08)
+        axes.set_xlabel("LUTs")
+        if measured:
+            line = len(measured) - 0.05
+            axes.axhline(line, color=RULE, linewidth=1)
+            axes.text(
+                most * 1.08,
+                line - 0.12,
+                "measured here",
+                ha="right",
+                va="bottom",
+                color=MUTED,
+                style="italic",
+            )
+            axes.text(
+                most * 1.08, line + 0.12, "published", ha="right", va="top", color=MUTED, style="italic"
+            )
+
+    told = ", ".join(f"{name} {luts}" for name, luts in measured)
+    quoted = ", ".join(f"{name} {luts}" for name, luts in published)
+    title = f"LUTs by part. Measured: {told or 'nothing'}. Published by others: {quoted}."
+    return _svg(paint, title, "luts", _BAR * (len(rows) + 2.6))
+
+
+def cube_bars(minimised: Mapping[str, Mapping[str, int]]) -> Markup:
+    """Product terms of each table before and after minimising, on a logarithmic scale."""
+
+    def paint(axes: "Axes") -> None:
+        for place, sizes in enumerate(minimised.values()):
+            before, after = sizes["cubes_before"], sizes["cubes_after"]
+            # A constant table has no product term, and zero has no logarithm.
+            axes.plot([max(after, 0.7), max(before, 0.7)], [place, place], color=RULE, linewidth=3, zorder=1)
+            axes.scatter(
+                max(before, 0.7), place, s=46, facecolor=PAPER, edgecolor=MUTED, linewidth=1.4, zorder=2
+            )
+            axes.scatter(max(after, 0.7), place, s=46, color=ACCENT, zorder=3)
+            for value, colour in ((before, MUTED), (after, INK)):
+                axes.annotate(
+                    f"{value:,}",
+                    (max(value, 0.7), place),
+                    xytext=(0, 8),
+                    textcoords="offset points",
+                    ha="center",
+                    color=colour,
+                    fontweight="bold" if colour == INK else "normal",
+                )
+        axes.set_xscale("log")
+        most = max(sizes["cubes_before"] for sizes in minimised.values())
+        axes.set_xlim(0.6, max(2, most) * 1.6)
+        axes.xaxis.set_major_formatter("{x:,.0f}")
+        axes.minorticks_off()
+        axes.set_yticks(range(len(minimised)), list(minimised))
+        axes.set_ylim(len(minimised) - 0.5, -0.75)
+        axes.set_xlabel("cubes, logarithmic: ○ as extracted, ● minimised")
+
+    told = "; ".join(
+        f"{name} {sizes['cubes_before']} before, {sizes['cubes_after']} after"
+        for name, sizes in minimised.items()
+    )
+    return _svg(paint, f"Cubes of each table. {told}.", "cubes", 0.55 * len(minimised) + 0.55)
+
+
+def scatter(points: Sequence[tuple[str, int, float]]) -> Markup:
+    """Accuracy against LUTs of several builds, each with its name.
+
+    Args:
+        points: name, LUTs and accuracy from 0 to 1.
+    """
+
+    def paint(axes: "Axes") -> None:
+        axes.scatter([x for _, x, _ in points], [100 * y for _, _, y in points], s=40, color=ACCENT, zorder=2)
+        for name, x, y in points:
+            axes.annotate(_short(name), (x, 100 * y), xytext=(7, 5), textcoords="offset points", color=INK)
+        axes.margins(x=0.12, y=0.2)
+        axes.grid(color=RULE, linewidth=0.6)
+        axes.set_axisbelow(True)
+        axes.set_xlabel("LUTs of the target")
+        axes.set_ylabel("accuracy of the circuit, %")
+
+    told = "; ".join(f"{name}: {x} LUTs, {100 * y:.2f} %" for name, x, y in points)
+    return _svg(paint, f"Accuracy against LUTs. {told}.", "scatter", 3.0)
+
+
+def _short(text: str, width: int = 56) -> str:
+    # Matplotlib takes a dollar sign for the start of a formula.
+    text = text.replace("$", r"\$")
+    return text if len(text) <= width else text[: width - 1].rstrip() + "…"
+
+
+def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float) -> Markup:
+    # Not at the top: Matplotlib takes a fifth of a second to import, which other commands need not wait for.
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    style: dict[Any, Any] = {
+        "svg.hashsalt": prefix,
+        "svg.fonttype": "none",
+        "font.size": 10,
+        "text.color": INK,
+        "axes.labelcolor": MUTED,
+        "axes.edgecolor": RULE,
+        "xtick.color": MUTED,
+        "ytick.color": MUTED,
+        "ytick.labelcolor": INK,
+        "xtick.labelcolor": MUTED,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+    }
+    with rc_context(style), warnings.catch_warnings():
+        # The browser draws the text, with whatever fonts it has.
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        figure = Figure(figsize=(_WIDTH, height), layout="constrained")
+        axes = figure.add_subplot()
+        axes.tick_params(axis="y", length=0)
+        axes.spines["left"].set_visible(prefix == "scatter")
+        paint(axes)
+        return _themed(figure, title, prefix)
+
+
+def _themed(figure: "Figure", title: str, prefix: str) -> Markup:
+    """The figure as part of a page: no head, no fixed size, the page's colours and font, ids of its own."""
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    text = stream.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"\s*<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    for colour, variable in _VARIABLES.items():
+        text = text.replace(colour, f"var({variable})")
+    # Its style sheet would reach the whole page, and its fonts are not the page's.
+    text = re.sub(r"\s*<style.*?</style>|; font-family: [^;\"]*|<!--.*?-->", "", text, flags=re.DOTALL)
+    text = re.sub(r' id="([^"]+)"', rf' id="{prefix}-\1"', text)
+    text = re.sub(r'(xlink:href="#|url\(#)', rf"\1{prefix}-", text)
+    head = f'<svg class="chart" role="img" aria-label="{escape(title)}"'
+    box = re.search(r'viewBox="[^"]+"', text)
+    assert box is not None
+    head = f'{head} {box[0]} xmlns:xlink="http://www.w3.org/1999/xlink">'
+    # Matplotlib has escaped the texts.
+    return Markup(re.sub(r"<svg[^>]*>", lambda _: head, text, count=1))  # noqa: S704

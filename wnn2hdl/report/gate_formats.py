@@ -1,0 +1,121 @@
+"""What the gate found, for people in a merge request and for the readers of build servers."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+from xml.etree import ElementTree as ET
+
+from wnn2hdl.report.baseline import Recorded, recorded
+from wnn2hdl.report.gate import Check
+from wnn2hdl.report.page import form
+
+VERSION = 1
+"""Of the form of `gate_json`; it rises when a key changes its meaning or goes away."""
+
+_FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML 1.0 cannot hold, not even escaped."""
+
+
+def gate_json(reports: Mapping[str, Mapping[str, Any]], checks: Sequence[Check]) -> dict[str, Any]:
+    """A JSON object: ``passed``, the figures of each of the ``builds``, and all ``checks``."""
+    return {
+        "format": "wnn2hdl-gate",
+        "version": VERSION,
+        "passed": all(check.passed for check in checks),
+        "builds": [
+            {
+                "name": name,
+                "target": report["target"],
+                "mode": report["mode"],
+                "luts": dict(recorded(report).luts),
+                "accuracy": report["accuracy"],
+                "proof": report["proof"]["status"],
+            }
+            for name, report in reports.items()
+        ],
+        "checks": [
+            {"build": check.build, "name": check.name, "passed": check.passed, "text": check.text}
+            for check in checks
+        ],
+    }
+
+
+def gate_markdown(
+    reports: Mapping[str, Mapping[str, Any]],
+    checks: Sequence[Check],
+    baseline: Mapping[str, Recorded] | None,
+) -> str:
+    """A short page: a table of the builds, then every reason to fail and everything that got better."""
+    failed = [check for check in checks if not check.passed]
+    title = f"✗ failed, {len(failed)} of" if failed else "✓ passed,"
+    title += f" {len(checks)} check{'s' if len(checks) != 1 else ''}"
+    heads = ["build", "result", "LUTs", "accuracy", "proof"]
+    rules = ["---", "---", "---:", "---:", "---"]
+    if baseline is not None:
+        heads[3:3], rules[3:3] = ["baseline"], ["---:"]
+        heads[5:5], rules[5:5] = ["baseline"], ["---:"]
+    lines = [f"### wnn2hdl: {title}", "", _row(heads), _row(rules)]
+    for name, report in reports.items():
+        bad = any(check.build == name for check in failed)
+        cells = [
+            _escape(name),
+            "✗ failed" if bad else "✓ passed",
+            form(report["parts"][report["target"]]["luts"]),
+            form(report["accuracy"], "percent"),
+            _escape(report["proof"]["status"]),
+        ]
+        if baseline is not None:
+            before = baseline.get(name)
+            cells[3:3] = [form(before.luts.get(before.target) if before else None)]
+            cells[5:5] = [form(before.accuracy if before else None, "percent")]
+        lines.append(_row(cells))
+    lines += _list("Why it failed", failed)
+    lines += _list("Better than the baseline; `--write-baseline` records it", [c for c in checks if c.better])
+    return "\n".join(lines) + "\n"
+
+
+def gate_junit(checks: Sequence[Check]) -> str:
+    """JUnit XML: a suite for each build, a case for each check, and for a failed one the reason, twice.
+
+    GitLab names a case by its ``classname`` and ``name``, shows the text of ``failure`` and not its
+    ``message`` (docs.gitlab.com/ci/testing/unit_test_reports); readers for GitHub show the ``message``.
+    """
+    root = ET.Element("testsuites", _counts(checks) | {"name": "wnn2hdl"})
+    for build in dict.fromkeys(check.build for check in checks):
+        own = [check for check in checks if check.build == build]
+        suite = ET.SubElement(root, "testsuite", _counts(own) | {"name": _printable(build)})
+        for check in own:
+            names = {"classname": f"wnn2hdl.{build}", "name": f"{build}: {check.name}"}
+            attributes = {key: _printable(value) for key, value in names.items()}
+            case = ET.SubElement(suite, "testcase", attributes | {"time": "0"})
+            if not check.passed:
+                text = _printable(f"{build}: {check.name}: {check.text}")
+                ET.SubElement(case, "failure", message=text, type="gate").text = text
+    ET.indent(root, " ")
+    return ET.tostring(root, encoding="unicode", xml_declaration=False).join(
+        ['<?xml version="1.0" encoding="UTF-8"?>\n', "\n"]
+    )
+
+
+def _counts(checks: Sequence[Check]) -> dict[str, str]:
+    failures = sum(not check.passed for check in checks)
+    return {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "time": "0"}
+
+
+def _printable(text: str) -> str:
+    return _FORBIDDEN.sub("?", text)
+
+
+def _list(title: str, checks: Sequence[Check]) -> list[str]:
+    if not checks:
+        return []
+    items = [f"- **{_escape(check.build)}**, {check.name}: {_escape(check.text)}" for check in checks]
+    return ["", f"{title}:", "", *items]
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _escape(text: str) -> str:
+    return re.sub(r"([\\`*_{}\[\]<>()#|~])", r"\\\1", " ".join(text.split()))

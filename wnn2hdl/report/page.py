@@ -1,0 +1,253 @@
+"""`report.json` as one HTML page that needs no other file."""
+
+import base64
+import json
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup
+
+from wnn2hdl.ir import Lut, LutNetwork, Mux
+from wnn2hdl.report.charts import cube_bars, lut_bars
+from wnn2hdl.report.logic import Grid, contents, expression, grid
+from wnn2hdl.report.schematic import draw
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+MISSING = "n/a"
+"""Stands where nothing was measured."""
+
+TARGETS = {
+    "block": "Nine pixel classifiers and an edge filter",
+    "pixel": "A pixel classifier",
+    "edge": "An edge filter",
+    "match": "A nine-bit match-and-count circuit",
+    "neighbourhood": "A classifier of a pixel that looks at its neighbours",
+}
+
+RESOURCES = {
+    "luts": "LUTs",
+    "muxf7": "MUXF7",
+    "muxf8": "MUXF8",
+    "carry4": "CARRY4",
+    "ffs": "flip-flops",
+    "bram36": "BRAM36",
+    "dsp": "DSP",
+    "delay_ps": "delay, ps",
+}
+
+_KINDS = {"luts": "LUTs", "ffs": "flip-flops", "bram36": "block RAMs", "dsp": "DSP slices"}
+
+_NOTES = 12
+"""Notes of a training that are shown."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture of the page.
+
+    Attributes:
+        title: its caption.
+        description: what it shows, for those who do not see it.
+        png: the file.
+        width: in pixels.
+        height: in pixels.
+    """
+
+    title: str
+    description: str
+    png: bytes
+    width: int
+    height: int
+
+    @property
+    def data(self) -> str:
+        """The file in base64."""
+        return base64.b64encode(self.png).decode()
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """What the page tells of a LUT, or of a multiplexer, which has no grid."""
+
+    id: str
+    name: str
+    kind: str
+    expression: str
+    init: str | None
+    grid: Grid | None
+    inputs: tuple[str, ...]
+
+
+def environment() -> "Environment":
+    """The templates of this package, every value escaped."""
+    # Not at the top: commands that write no page need not wait for it.
+    from jinja2 import Environment, PackageLoader
+
+    return Environment(
+        loader=PackageLoader("wnn2hdl.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+
+
+def build_page(
+    report: Mapping[str, Any],
+    networks: Mapping[str, LutNetwork],
+    pictures: Sequence[Picture] = (),
+    legend: Sequence[tuple[str, str]] = (),
+) -> str:
+    """The page of a build; the same arguments give the same bytes.
+
+    Every figure of the report stands in an element whose ``data-key`` is its path in `report.json`, with dots
+    between the steps, and whose ``value`` is the figure as JSON has it.
+
+    Args:
+        report: the object of `report.json`.
+        networks: the LUT networks of the build by part, or by another name where a part is made of several;
+            those of parts that were not measured are not drawn.
+        pictures: sample pictures.
+        legend: class names and their colours in the pictures, as CSS writes colours.
+    """
+    templates = environment()
+    templates.globals["figure"] = figures_of(report)
+    measured = [part for part, figures in report["parts"].items() if figures["luts"] is not None]
+    model = report.get("model")
+    confusion = report.get("confusion")
+    return templates.get_template("build.html").render(
+        report=report,
+        what=TARGETS.get(report["target"], f"A circuit of target {report['target']}"),
+        form=form,
+        quoted=shlex.quote(report["name"]),
+        measured=measured,
+        resource_heads={
+            key: head
+            for key, head in RESOURCES.items()
+            if key in ("luts", "delay_ps") or any(report["parts"][part].get(key) for part in measured)
+        },
+        kinds=_KINDS,
+        sum=_sum(report["parts"]),
+        circuits=[
+            _circuit(templates, name, network)
+            for name, network in networks.items()
+            if name in measured or name not in report["parts"]
+        ],
+        pictures=pictures,
+        legend=legend,
+        classes=model["classes"] if model else [f"class {i}" for i in range(len(confusion or ()))],
+        notes=_notes(model["training"]) if model else [],
+        options={key: value for key, value in report["options"].items() if not isinstance(value, Mapping)},
+        lut_chart=lut_bars(report),
+        cube_chart=cube_bars(report["minimised"]) if report["minimised"] else "",
+    )
+
+
+def figures_of(report: Mapping[str, Any]) -> Callable[..., Markup]:
+    """A function that writes the figure at a path of a report, as an element that tells the path."""
+
+    def figure(key: str, kind: str = "count") -> Markup:
+        value: Any = report
+        for step in key.split("."):
+            value = value[int(step)] if isinstance(value, Sequence) else value.get(step)
+        return data_element(key, value, kind)
+
+    return figure
+
+
+def data_element(key: str, value: Any, kind: str) -> Markup:
+    """A figure as a ``data`` element."""
+    return Markup('<data data-key="{}" value="{}">{}</data>').format(
+        key, json.dumps(value), form(value, kind)
+    )
+
+
+def form(value: Any, kind: str = "count") -> str:
+    """A figure as a person reads it.
+
+    Args:
+        value: the figure; None was not measured.
+        kind: ``count``, ``percent`` (of a share from 0 to 1), ``points`` (percent already), ``ps``,
+            ``seconds``, ``plain_seconds`` or ``text``.
+    """
+    if value is None:
+        return MISSING
+    match kind:
+        case "percent":
+            return percent(value)
+        case "points":
+            return f"{value:.3f} %" if value else "0 %"
+        case "ps":
+            return f"{value:,} ps"
+        case "seconds":
+            return f"{value:.2f} s"
+        case "plain_seconds":
+            return f"{value:.2f}"
+        case "text":
+            return str(value)
+    return f"{value:,}" if isinstance(value, int) else f"{value:,g}"
+
+
+def percent(share: float) -> str:
+    """A share from 0 to 1 with two decimals, or with as many as it takes not to be told as all or nothing."""
+    digits = 2
+    while 0 < share < 1 and float(f"{100 * share:.{digits}f}") in (0, 100) and digits < 12:
+        digits += 1
+    return f"{100 * share:.{digits}f} %"
+
+
+def _circuit(templates: "Environment", name: str, network: LutNetwork) -> dict[str, Any]:
+    drawing = draw(network)
+    cells = {cell.name: _cell(name, i, cell, network) for i, cell in enumerate(network.cells)}
+    svg = templates.get_template("schematic.svg").render(
+        name=name,
+        drawing=drawing,
+        cells=cells,
+        inputs=len(network.inputs) - len(drawing.unread),
+        outputs=len(network.outputs),
+    )
+    return {
+        "name": name,
+        "luts": len(network.luts),
+        "muxes": len(network.muxes),
+        "depth": network.depth,
+        "path": drawing.path,
+        "unread": drawing.unread,
+        "cells": list(cells.values()),
+        "svg": Markup(svg),  # noqa: S704  # rendered by a template that escapes
+    }
+
+
+def _cell(part: str, position: int, cell: Lut | Mux, network: LutNetwork) -> _Cell:
+    place = f"table-{part}-{position}"
+    if isinstance(cell, Lut):
+        kind = f"LUT{len(cell.inputs)}"
+        return _Cell(place, cell.name, kind, expression(cell), contents(cell), grid(cell), cell.inputs)
+    joins_luts = any(lut.name == cell.low for lut in network.luts)
+    text = f"{cell.name} = {cell.select} ? {cell.high} : {cell.low}"
+    kind = "MUXF7" if joins_luts else "MUXF8"
+    return _Cell(place, cell.name, kind, text, None, None, (cell.low, cell.high, cell.select))
+
+
+def _sum(parts: Mapping[str, Mapping[str, Any]]) -> str:
+    """How a block comes to its LUTs, if it takes those of nine pixels and of an edge filter."""
+    block, pixel, edge = (parts.get(part, {}).get("luts") for part in ("block", "pixel", "edge"))
+    if block is None or pixel is None or edge is None or block != 9 * pixel + edge:
+        return ""
+    return f"The block is nine pixels of {pixel} and an edge filter of {edge}: {block}."
+
+
+def _notes(training: Mapping[str, Any]) -> list[tuple[str, str]]:
+    texts = {key.replace("_", " "): _note(value) for key, value in training.items()}
+    return [(key, text if len(text) < 160 else text[:159].rstrip() + "…") for key, text in texts.items()][
+        :_NOTES
+    ]
+
+
+def _note(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {_note(inner)}" for key, inner in value.items())
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        texts = [_note(inner) for inner in value]
+        return ", ".join(texts) if len(texts) < 9 else f"{len(texts)}: {texts[0]} … {texts[-1]}"
+    return form(value, "text" if isinstance(value, str | bool) else "count")

@@ -1,0 +1,45 @@
+"""Checking the JSON objects that come back from disk."""
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+
+from wnn2hdl.errors import ModelFileError
+
+
+def check_report(report: Mapping[str, Any], path: Path) -> None:
+    """Raise ModelFileError unless an object is a report that this version of wnn2hdl understands."""
+    check(report, "report", path, "compile the model again with this wnn2hdl")
+
+
+def check(data: Mapping[str, Any], name: str, path: Path, mend: str) -> None:
+    """Check an object against a schema of this package.
+
+    Args:
+        data: the object.
+        name: of the schema: ``baseline`` or ``report``.
+        path: the file it was read from.
+        mend: what to do about a damaged one.
+
+    Raises:
+        ModelFileError: it does not fit.
+    """
+    error = jsonschema.exceptions.best_match(_validator(name).iter_errors(data))
+    if error is not None:
+        where = "/".join(str(step) for step in error.absolute_path) or "the top level"
+        raise ModelFileError(
+            f"not a {name}, or one of another version",
+            value=f"{path} (at {where}: {error.message[:120]})",
+            mend=mend,
+        )
+
+
+@cache
+def _validator(name: str) -> jsonschema.Draft202012Validator:
+    text = files(__package__).joinpath(f"{name}.schema.json").read_text(encoding="utf-8")
+    return jsonschema.Draft202012Validator(json.loads(text))
