@@ -3,7 +3,8 @@
     python benchmarks/accuracy.py IMAGES MASKS [--mappings 20] [--seed 0]
 
 Five-fold cross-validation by image over a folder of pictures and one of masks. LUTs are those of the
-classifier trained on all images, as mapped; logistic regression is no circuit here and has none.
+classifier trained on all images, as mapped; logistic regression is no circuit here and has none. The last
+rows look at a pixel's neighbours, too.
 """
 
 import argparse
@@ -17,13 +18,17 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
-from wnn2hdl.bitselect import MOST_LUTS, look_up_table, select_bits
-from wnn2hdl.dataset import CLASSES, ColourHistogram, colour_histogram, from_masks
+from wnn2hdl.bitselect import MOST_LUTS, SIZES, look_up_table, select_bits
+from wnn2hdl.dataset import CLASSES, ColourHistogram, Dataset, colour_histogram, folds, from_masks
 from wnn2hdl.encode import high_bits
 from wnn2hdl.ir import BitSelect, WisardModel
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.pipeline.budget import code_histogram, saturates, train_discriminators
+from wnn2hdl.pipeline.classifiers import model_classifier
 from wnn2hdl.pipeline.crossval import FOLDS, Trainer, cross_validate
+from wnn2hdl.pipeline.evaluation import evaluate
+from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
+from wnn2hdl.pipeline.planning import CompileOptions, plan
 from wnn2hdl.tables import pixel_table
 
 RED = BitSelect(tuple(f"R{bit}" for bit in range(8)))
@@ -37,7 +42,8 @@ def main() -> None:
     parser.add_argument("--mappings", type=int, default=20)
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
-    images = [colour_histogram(image, 2) for image in from_masks(given.images, given.masks)]
+    dataset = from_masks(given.images, given.masks)
+    images = [colour_histogram(image, 2) for image in dataset]
     print("| classifier | accuracy | LUTs a pixel |\n|---|---|---|")
 
     row("red threshold", *measured(images, partial(red_threshold, images)))
@@ -62,6 +68,10 @@ def main() -> None:
 
         row(f"bit selection, {count} LUT", *measured(images, select))
 
+    for size in SIZES:
+        accuracy, needed = neighbourhood(dataset, size, given.seed)
+        row(f"neighbourhood {size}x{size}", accuracy, needed)
+
 
 def row(name: str, accuracy: float, luts: int) -> None:
     """Print a row of the table."""
@@ -76,6 +86,29 @@ def measured(images: Sequence[ColourHistogram], train: Trainer) -> tuple[float, 
 def luts(model: WisardModel) -> int:
     """LUTs of a model's exact circuit."""
     return len(map_luts(pixel_table(model)).network.luts)
+
+
+def neighbourhood(dataset: Dataset, size: int, seed: int) -> tuple[float, int]:
+    """Accuracy in cross-validation of tables over ``size`` x ``size`` pixels, and LUTs trained on all images.
+
+    The LUTs are those of the whole circuit for one window, and just as many where pixels come as a stream:
+    each table stands at one place of the window, so its answers need delays, but no copies.
+    """
+
+    def train(images: Dataset) -> WisardModel:
+        return train_neighbourhood(images, size, max_luts=None, seed=seed, progress=silent)
+
+    right = pixels = 0
+    for training, test in folds(dataset.names, FOLDS):
+        result = evaluate(model_classifier(train(dataset.subset(training))), dataset.subset(test), silent)
+        right += int(np.trace(result.confusion, axis1=1, axis2=2).sum())
+        pixels += int(result.confusion.sum())
+    circuit = plan(train(dataset), CompileOptions(), silent).design
+    return right / pixels, sum(len(network.luts) for network in circuit.networks.values())
+
+
+def silent(step: str, done: int, total: int) -> None:
+    """No progress is shown."""
 
 
 def red_threshold(images: Sequence[ColourHistogram], chosen: Sequence[int]) -> WisardModel:

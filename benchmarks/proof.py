@@ -22,6 +22,7 @@ from wnn2hdl.verify.compiled import CompiledSimulator, run_compiled
 from wnn2hdl.verify.mutation import check_proof, make_mutants
 from wnn2hdl.verify.proof import prove, prove_netlists
 from wnn2hdl.verify.simulation import simulate
+from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.vectors import stimulus
 
 MUTANTS = 200
@@ -46,6 +47,8 @@ def proof_times(design: Design, circuits: Circuits) -> None:
 
 def mutants_caught(design: Design, circuits: Circuits) -> None:
     """Caught of catchable mutants of pixel and edge filter."""
+    if not isinstance(design.specification, Specification):
+        return  # mutants are judged by the circuit's answer to one pixel
     text = circuits.verilog.read_text(encoding="utf-8")
     for part in MUTATED:
         module = design.specification.part(part).module

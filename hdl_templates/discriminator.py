@@ -65,9 +65,9 @@ class Parameters:
         weights = 1 << np.arange(self.class_width)
         return np.asarray(self.lookup.compute(codes) @ weights, dtype=np.int64)
 
-    def create(self) -> "Discriminator":
-        """The hardware."""
-        return Discriminator(parameters=self)
+    def create(self, name: str = "pixel") -> "Discriminator":
+        """The hardware, as a module of this name."""
+        return Discriminator(parameters=self, name=name)
 
 
 class Discriminator(Part):
@@ -75,16 +75,16 @@ class Discriminator(Part):
 
     Args:
         parameters: what it reads and how it decides.
+        name: of its module; classifiers that differ need different ones.
 
     Members:
         rgb: In, 24 bits, the pixel.
         class_bits: Out, index of the class in binary.
     """
 
-    module_name = "pixel"
-
-    def __init__(self, *, parameters: Parameters) -> None:
+    def __init__(self, *, parameters: Parameters, name: str) -> None:
         self.parameters = parameters
+        self.module_name = name
         super().__init__({"rgb": In(PIXEL_BITS), "class_bits": Out(parameters.class_width)})
 
     def elaborate(self, platform: object) -> Module:

@@ -1,12 +1,15 @@
 """From tables, covers and LUT networks to Amaranth components."""
 
+from collections.abc import Sequence
+
 from hdl_templates import bit_match, discriminator, lookup
 from hdl_templates import block as block_template
 from hdl_templates import block_match as block_match_template
 from hdl_templates import edge_filter as edge_template
+from hdl_templates import neighbourhood as neighbourhood_template
 from hdl_templates import sobel as sobel_template
 from hdl_templates.lookup import Style
-from wnn2hdl.ir import WINDOW_BITS, BitSelect, Cover, Lut, LutNetwork
+from wnn2hdl.ir import WINDOW_BITS, BitSelect, Cover, Lut, LutNetwork, Neighbourhood
 
 Logic = Cover | LutNetwork
 """What a truth table was minimised to."""
@@ -57,6 +60,29 @@ def block_match(
     """The block with the matcher on its nine bits; arguments and errors as for `pixel`."""
     block_parameters = _block(encoder, pixel_logic, edge_logic, class_count, style)
     return block_match_template.Parameters(block_parameters).create()
+
+
+def neighbourhood(
+    encoder: Neighbourhood, taps: Sequence[Logic], last: Logic, *, style: Style = "equations"
+) -> neighbourhood_template.Neighbourhood:
+    """The classifier ``neighbourhood`` of a pixel and its neighbours: ``window`` to ``class_bits``.
+
+    Args:
+        encoder: the taps and their places.
+        taps: for each tap its logic, one output.
+        last: the classification of the taps' bits; output ``j`` is bit ``j`` of the class.
+        style: as for `pixel`.
+
+    Raises:
+        ValueError: encoder and logic do not fit together.
+    """
+    if last.inputs != encoder.names:
+        raise ValueError(f"the logic reads {last.inputs}, but the encoder gives {encoder.names}")
+    tables = tuple(
+        (encoder.size * tap.row + tap.column, _pixel(tap.pixel, logic, 2, style))
+        for tap, logic in zip(encoder.taps, taps, strict=True)
+    )
+    return neighbourhood_template.Parameters(encoder.size, tables, _lookup(last, style)).create()
 
 
 def match(width: int = WINDOW_BITS) -> bit_match.BitMatch:

@@ -9,7 +9,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
     MAX_TABLE_INPUTS,
     WINDOW_CODES,
-    BitSelect,
+    PictureEncoder,
     TruthTable,
     WisardModel,
     codes_to_bits,
@@ -39,11 +39,11 @@ def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> Tr
     return table if care is None else table.with_care(care)
 
 
-def code_histogram(encoder: BitSelect, images: Iterable[NDArray[np.uint8]]) -> NDArray[np.int64]:
-    """How often each pixel code occurs, int64 ``[2**width]``.
+def code_histogram(encoder: PictureEncoder, images: Iterable[NDArray[np.uint8]]) -> NDArray[np.int64]:
+    """How often each code of a pixel or a neighbourhood occurs, int64 ``[2**width]``.
 
     Args:
-        encoder: what makes codes of pixels.
+        encoder: what makes codes of pictures.
         images: uint8 ``[height, width, 3]`` each; read one after the other, never held together.
 
     Raises:
@@ -88,18 +88,6 @@ def care_set(histogram: NDArray[np.int64], minimum: int) -> NDArray[np.bool_]:
             mend="ask for fewer or give more imagery",
         )
     return care
-
-
-def coverage(histogram: NDArray[np.int64], care: NDArray[np.bool_]) -> float:
-    """Share of the counted pixels whose code is in the care set, from 0 to 1.
-
-    Raises:
-        InputError: the histogram is empty.
-    """
-    total = int(histogram.sum())
-    if total == 0:
-        raise InputError("there are no pixels to measure the coverage on", mend="give imagery")
-    return int(histogram[care].sum()) / total
 
 
 def _check_width(width: int) -> None:

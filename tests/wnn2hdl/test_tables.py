@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Encoder, Thermometer, WisardModel, codes_to_bits, window_codes
-from wnn2hdl.tables import care_set, code_histogram, coverage, pixel_table, window_histogram
+from wnn2hdl.tables import care_set, code_histogram, pixel_table, window_histogram
 
 small_images = arrays(
     np.uint8, st.tuples(st.integers(1, 6), st.integers(1, 6), st.just(3)), elements=st.integers(0, 255)
@@ -98,25 +98,6 @@ def test_the_care_set_holds_what_occurs_often_enough(histogram: NDArray[np.int64
 def test_a_care_set_of_everything_is_not_asked_for() -> None:
     with pytest.raises(InputError, match="so few occurrences: 0; ask for 1 or more"):
         care_set(np.ones(4, dtype=np.int64), 0)
-
-
-def test_coverage_is_a_share_of_pixels_not_of_codes() -> None:
-    histogram = np.array([6, 1, 0, 1])
-    assert coverage(histogram, histogram >= 2) == 0.75
-    assert coverage(histogram, np.ones(4, dtype=np.bool_)) == 1.0
-    assert coverage(histogram, np.zeros(4, dtype=np.bool_)) == 0.0
-
-
-def test_no_pixels_have_no_coverage() -> None:
-    with pytest.raises(InputError, match="no pixels"):
-        coverage(np.zeros(4, dtype=np.int64), np.ones(4, dtype=np.bool_))
-
-
-@given(histograms)
-def test_coverage_falls_as_the_care_set_asks_for_more(histogram: NDArray[np.int64]) -> None:
-    shares = [coverage(histogram, care_set(histogram, m)) for m in range(1, int(histogram.max()) + 1)]
-    assert shares[0] == 1.0
-    assert shares == sorted(shares, reverse=True)
 
 
 def test_the_table_answers_as_the_model_does() -> None:

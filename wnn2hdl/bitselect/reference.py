@@ -10,6 +10,9 @@ from wnn2hdl.bitselect.drift import Colours
 INVERSE_RIDGE = 1e4
 """Inverse strength of the ridge penalty for weights that sum to 1: next to none, yet never singular."""
 
+DARKEST = 4.0
+"""Added to the levels of mean colours, so that their logarithms do not tell black from nearly black."""
+
 Probability = Callable[[NDArray[np.int64]], NDArray[np.float64]]
 
 
@@ -44,6 +47,32 @@ def fit_reference(colours: Colours) -> Probability:
         return np.asarray(np.mean(answers, axis=0))
 
     return probability
+
+
+def fit_window_reference(
+    means: NDArray[np.float64], labels: NDArray[np.uint8]
+) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """A logistic regression on the logarithms of a window's mean colour, their squares and products.
+
+    Args:
+        means: mean colours of windows, float64 ``[samples, 3]``.
+        labels: 0 or 1, ``[samples]``.
+
+    Returns:
+        a function from mean colours, float64 ``[m, 3]``, to the probability of class 1, float64 ``[m]``.
+    """
+    from sklearn.linear_model import LogisticRegression
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import PolynomialFeatures, StandardScaler
+
+    regression = make_pipeline(
+        StandardScaler(),
+        PolynomialFeatures(2, include_bias=False),
+        StandardScaler(),
+        LogisticRegression(solver="newton-cholesky"),
+    )
+    regression.fit(np.log(means + DARKEST), labels)
+    return lambda colours: np.asarray(regression.predict_proba(np.log(colours + DARKEST))[:, 1])
 
 
 def _linear(rgb: NDArray[np.int64]) -> NDArray[np.float64]:

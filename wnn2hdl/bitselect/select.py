@@ -11,7 +11,7 @@ from wnn2hdl.bitselect.drift import LEAST_SHARE, Colours, blurred, main_drift, m
 from wnn2hdl.bitselect.mass import POOL, signed_mass
 from wnn2hdl.bitselect.reference import fit_reference
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, WisardModel, codes_to_bits
+from wnn2hdl.ir import BitSelect, Encoder, WisardModel, codes_to_bits
 
 MOST_LUTS = 3
 
@@ -80,7 +80,7 @@ def select_bits(
 
 
 def look_up_table(
-    encoder: BitSelect, classes: tuple[str, ...], answers: NDArray[np.int64], training: dict[str, Any]
+    encoder: Encoder, classes: tuple[str, ...], answers: NDArray[np.int64], training: dict[str, Any]
 ) -> WisardModel:
     """A model of one RAM a class, of which exactly one fires for each code.
 

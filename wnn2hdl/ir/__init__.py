@@ -1,7 +1,18 @@
 """The contract between stages: encoders, models, tables, covers, LUT networks, windows and their files."""
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, bits_to_codes, codes_to_bits
-from wnn2hdl.ir.encoder import CHANNELS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect, Encoder, Thermometer
+from wnn2hdl.ir.encoder import (
+    CHANNELS,
+    COLOURS,
+    PIXEL_BIT_NAMES,
+    PIXEL_BITS,
+    BitSelect,
+    Encoder,
+    Neighbourhood,
+    PictureEncoder,
+    Tap,
+    Thermometer,
+)
 from wnn2hdl.ir.model import WisardModel
 from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux
 from wnn2hdl.ir.tables import Cover, Cube, TruthTable
@@ -10,6 +21,7 @@ from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, win
 __all__ = [
     "CENTRE",
     "CHANNELS",
+    "COLOURS",
     "CONSTANTS",
     "LUT_INPUTS",
     "MAX_TABLE_INPUTS",
@@ -25,6 +37,9 @@ __all__ = [
     "Lut",
     "LutNetwork",
     "Mux",
+    "Neighbourhood",
+    "PictureEncoder",
+    "Tap",
     "Thermometer",
     "TruthTable",
     "WisardModel",

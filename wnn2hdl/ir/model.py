@@ -38,6 +38,8 @@ class WisardModel:
         counts: int64 ``[classes, k, 2**n]``, how often each address was seen in training.
         bleaching: the threshold, at least 1.
         training: where the model comes from (seed, data, chosen threshold …), any JSON object.
+        colours: int64, codes of `COLOURS` that occur in the training images, ascending; None if they are not
+            known. They decide no answer, but tell imagery of the kind that was trained on from foreign one.
     """
 
     encoder: Encoder
@@ -46,6 +48,7 @@ class WisardModel:
     counts: NDArray[np.int64]
     bleaching: int
     training: dict[str, Any] = field(default_factory=dict)
+    colours: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         if len(self.classes) < 2 or len(set(self.classes)) != len(self.classes):
@@ -110,14 +113,15 @@ class WisardModel:
         return self.evaluate(codes_to_bits(np.arange(1 << self.encoder.width), self.encoder.width))
 
     def digest(self) -> str:
-        """SHA-256 of all that decides the model's answers (not of `training`), hexadecimal."""
+        """SHA-256 of all that decides the model's answers (not of `training` and `colours`), hexadecimal."""
         data = self.to_json()
-        del data["training"]
+        for told in ("training", "colours"):
+            data.pop(told, None)
         return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
     def to_json(self) -> dict[str, Any]:
         """The model file's object; RAMs are stored as their non-zero addresses and counts."""
-        return {
+        data = {
             "format": FORMAT,
             "version": VERSION,
             "encoder": self.encoder.to_json(),
@@ -129,6 +133,7 @@ class WisardModel:
             "counts": [[_sparse(ram) for ram in discriminator] for discriminator in self.counts],
             "training": self.training,
         }
+        return data if self.colours is None else data | {"colours": self.colours.tolist()}
 
     def save(self, path: Path) -> None:
         """Write the model file."""
@@ -165,6 +170,7 @@ class WisardModel:
             counts=counts,
             bleaching=data["bleaching"],
             training=data["training"],
+            colours=np.array(data["colours"], dtype=np.int64) if "colours" in data else None,
         )
 
 

@@ -14,7 +14,7 @@ from wnn2hdl import elaborate
 from wnn2hdl.emit import testbench, vectors, vendor_cells_model, verilog
 from wnn2hdl.ir.files import write_text
 from wnn2hdl.pipeline.design import Design, Target
-from wnn2hdl.verify.specification import PartName, Samples
+from wnn2hdl.verify.specification import NeighbourhoodSpecification, PartName, Samples
 from wnn2hdl.verify.vectors import stimulus
 
 SOBEL = "sobel"
@@ -25,6 +25,7 @@ PARTS: Mapping[Target, tuple[PartName, ...]] = {
     "pixel": ("pixel",),
     "edge": ("edge",),
     "match": ("match",),
+    "neighbourhood": ("neighbourhood",),
 }
 """The circuits that are simulated and proved for each target; the top of the Verilog is the last.
 
@@ -55,19 +56,28 @@ class Circuits:
 
 def component(design: Design, part: PartName) -> Component:
     """The Amaranth component of one of a design's circuits."""
-    encoder, classes = design.specification.encoder, len(design.model.classes)
+    specification, networks, classes = design.specification, design.networks, len(design.model.classes)
     style: Literal["cells", "equations"] = "cells" if design.style == "luts" else "equations"
+    if isinstance(specification, NeighbourhoodSpecification):
+        taps = [networks[name] for name in specification.encoder.names]
+        return elaborate.neighbourhood(specification.encoder, taps, design.decision, style=style)
+    encoder = specification.encoder
     match part:
         case "pixel":
-            return elaborate.pixel(encoder, design.pixel, class_count=classes, style=style)
+            return elaborate.pixel(encoder, networks["pixel"], class_count=classes, style=style)
         case "edge":
-            return elaborate.edge_filter(design.edge, style=style)
+            return elaborate.edge_filter(networks["edge"], style=style)
         case "match":
             return elaborate.match()
         case "block":
-            return elaborate.block(encoder, design.pixel, design.edge, class_count=classes, style=style)
+            return elaborate.block(
+                encoder, networks["pixel"], networks["edge"], class_count=classes, style=style
+            )
         case "block_match":
-            return elaborate.block_match(encoder, design.pixel, design.edge, class_count=classes, style=style)
+            return elaborate.block_match(
+                encoder, networks["pixel"], networks["edge"], class_count=classes, style=style
+            )
+    raise ValueError(f"{part} is no circuit of a design of {design.target}")
 
 
 def circuits_of(design: Design, folder: Path) -> Circuits:

@@ -1,15 +1,16 @@
 """What answers for the pixels of a picture: a model, or the circuit that was made of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import BitSelect, WisardModel, codes_to_bits
+from wnn2hdl.ir import COLOURS, PictureEncoder, WisardModel, codes_to_bits
+from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.evaluation import circuit_answers
-from wnn2hdl.pipeline.training import pixel_encoder
+from wnn2hdl.pipeline.training import picture_encoder
 from wnn2hdl.pipeline.verification import open_build
 
 
@@ -40,24 +41,27 @@ class PictureClassifier(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class PixelTable:
-    """A classifier that looks at one pixel: two tables over its codes.
+    """A classifier that looks a pixel up, or a neighbourhood.
 
     Attributes:
         classes: class names, the background first.
-        encoder: what makes codes of pixels.
+        encoder: what makes codes of pixels or neighbourhoods.
         answers: uint8 ``[2**width]``, class index of each code.
-        known: bool ``[2**width]``, codes that the training or the care set knows.
+        care: bool ``[2**width]``, the codes that the circuit was made for, or that the training may have
+            seen.
+        colours: bool ``[2**COLOURS.width]``, colours that the training saw; None if that is not known.
     """
 
     classes: tuple[str, ...]
-    encoder: BitSelect
+    encoder: PictureEncoder
     answers: NDArray[np.uint8]
-    known: NDArray[np.bool_]
+    care: NDArray[np.bool_]
+    colours: NDArray[np.bool_] | None = None
 
     @property
     def halo(self) -> int:
-        """None of the neighbours is looked at."""
-        return 0
+        """See `PictureClassifier.halo`."""
+        return self.encoder.halo
 
     def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """See `PictureClassifier.classify`."""
@@ -65,29 +69,52 @@ class PixelTable:
 
     def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """See `PictureClassifier.covered`."""
-        return np.take(self.known, self.encoder.codes(picture))
+        height, width = (side - 2 * self.halo for side in picture.shape[:2])
+        if self.colours is None:
+            known = np.ones((height, width), dtype=np.bool_)
+        else:
+            middle = picture[self.halo : self.halo + height, self.halo : self.halo + width]
+            known = np.take(self.colours, COLOURS.codes(middle))
+        if not self.care.all():
+            known &= np.take(self.care, self.encoder.codes(picture))
+        return known
 
 
 def open_classifier(path: Path) -> PictureClassifier:
     """The classifier in a model file; or the circuit of a build folder, cared for or not.
+
+    A circuit knows the pixels in its care set that have colours its model was trained on.
 
     Raises:
         ModelFileError: the file is missing, damaged or no model.
         InputError: the folder is no build, or the model reads no pixels.
     """
     if path.is_dir():
-        design, _, _ = open_build(path)
-        encoder, answers = pixel_encoder(design.model), circuit_answers(design.pixel)
-        known = design.specification.pixel_care
-        return PixelTable(design.model.classes, encoder, answers.astype(np.uint8), known)
+        design = open_build(path)[0]
+        return replace(circuit_classifier(design), colours=_colours(design.model))
     return model_classifier(WisardModel.load(path))
 
 
-def model_classifier(model: WisardModel) -> PictureClassifier:
+def circuit_classifier(design: Design) -> PixelTable:
+    """The classifier that a design's circuit is, cared for or not; it knows what is in its care set."""
+    encoder, answers = picture_encoder(design.model), circuit_answers(design.decision)
+    # Three classes take two bits, so a circuit may answer a fourth where it is free: taken for the last one.
+    answers = np.minimum(answers, len(design.model.classes) - 1)
+    care = design.specification.care
+    return PixelTable(design.model.classes, encoder, answers.astype(np.uint8), care)
+
+
+def model_classifier(model: WisardModel) -> PixelTable:
     """The classifier that a model is; raises InputError if it reads no pixels."""
-    encoder = pixel_encoder(model)
+    encoder = picture_encoder(model)
     answers = model.evaluate_all_codes().astype(np.uint8)
-    return PixelTable(model.classes, encoder, answers, familiar_codes(model))
+    return PixelTable(model.classes, encoder, answers, familiar_codes(model), _colours(model))
+
+
+def _colours(model: WisardModel) -> NDArray[np.bool_] | None:
+    if model.colours is None:
+        return None
+    return np.isin(np.arange(1 << COLOURS.width), model.colours)
 
 
 def familiar_codes(model: WisardModel) -> NDArray[np.bool_]:

@@ -11,15 +11,18 @@ from typing import Any
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.emit import write_manifest
 from wnn2hdl.errors import CheckError
+from wnn2hdl.images import write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.files import write_json, write_text
 from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import GENERATORS, emit
+from wnn2hdl.pipeline.classifiers import circuit_classifier, model_classifier
 from wnn2hdl.pipeline.design import Design
-from wnn2hdl.pipeline.evaluation import circuit_answers, evaluate
-from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, REPORT_PAGE, staged
+from wnn2hdl.pipeline.evaluation import evaluate
+from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
 from wnn2hdl.pipeline.planning import CompileOptions, Plan, plan
-from wnn2hdl.pipeline.training import Progress, pixel_encoder
+from wnn2hdl.pipeline.reporting import command, model_figures, sample_picture, write_page
+from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.report import (
     BuildReport,
     Care,
@@ -32,8 +35,8 @@ from wnn2hdl.report import (
     report_markdown,
 )
 from wnn2hdl.synth import OPTIONS, XC7Z020, Synthesis, utilisation
-from wnn2hdl.tables import coverage
 from wnn2hdl.tools import find_yosys
+from wnn2hdl.verify.specification import Specification
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,10 +103,12 @@ def compile_model(
         with clock.stage("check and synthesise"):
             checked = check(planned.design, circuits, progress)
         with clock.stage("evaluate"):
-            accuracies = _accuracies(planned.design, test_set, progress)
-        report = report_dict(_report(folder.name, planned, options, checked, accuracies, clock))
+            measured = _measure(planned.design, test_set, progress)
+        report = report_dict(_report(folder.name, planned, options, checked, measured, clock))
         write_json(staging / REPORT_FILE, report)
         write_text(staging / REPORT_PAGE, report_markdown(report))
+        write_png(staging / SAMPLE_FILE, sample_picture(test_set))
+        write_page(staging)
         if checked.failure is not None:
             write_text(staging / FAILED, checked.failure + "\n")
         names = sorted(path.name for path in staging.iterdir())
@@ -124,29 +129,39 @@ def require_luts(build: Build, max_luts: int) -> None:
 
 def _header(design: Design, options: CompileOptions) -> list[str]:
     specification = design.specification
-    codes = int(specification.pixel_care.sum())
-    lines = [
-        f"Mode {design.mode}: equal to the model on {codes} of {len(specification.pixel_care)} pixel codes."
-    ]
+    care = specification.care
+    kind = "pixel" if isinstance(specification, Specification) else "neighbourhood"
+    lines = [f"Mode {design.mode}: equal to the model on {int(care.sum())} of {len(care)} {kind} codes."]
     if design.mode == "domain":
         lines.append("On other codes it may answer anything.")
-    edges = specification.edge_filter
-    lines.append(
-        f"Edge filter {edges.name}, {edges.size} patterns; style {design.style}, effort {options.effort}."
-    )
-    return lines
+    made = f"style {design.style}, effort {options.effort}."
+    if isinstance(specification, Specification):
+        edges = specification.edge_filter
+        made = f"Edge filter {edges.name}, {edges.size} patterns; {made}"
+    return [*lines, f"{made[0].upper()}{made[1:]}"]
 
 
-def _accuracies(
-    design: Design, test_set: Dataset | None, progress: Progress
-) -> tuple[float | None, float | None, float | None]:
-    """Accuracy of the circuit and of the model, and the share of the test pixels that is cared for."""
+@dataclass(frozen=True)
+class _Measured:
+    """What labelled images show; None where there were none."""
+
+    accuracy: float | None = None
+    model_accuracy: float | None = None
+    coverage: float | None = None
+    confusion: tuple[tuple[int, ...], ...] | None = None
+
+
+def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _Measured:
     if test_set is None:
-        return None, None, None
-    encoder = pixel_encoder(design.model)
-    circuit = evaluate(circuit_answers(design.pixel), encoder, test_set, progress)
-    model = evaluate(design.model.evaluate_all_codes(), encoder, test_set, progress)
-    return circuit.accuracy, model.accuracy, coverage(circuit.codes, design.specification.pixel_care)
+        return _Measured()
+    circuit = evaluate(circuit_classifier(design), test_set, progress)
+    model = evaluate(model_classifier(design.model), test_set, progress)
+    return _Measured(
+        circuit.accuracy,
+        model.accuracy,
+        circuit.coverage,
+        tuple(map(tuple, circuit.confusion.sum(axis=0).tolist())),
+    )
 
 
 def _report(
@@ -154,12 +169,11 @@ def _report(
     planned: Plan,
     options: CompileOptions,
     checked: Checked,
-    accuracies: tuple[float | None, float | None, float | None],
+    measured: _Measured,
     clock: _Clock,
 ) -> BuildReport:
     design = planned.design
     specification = design.specification
-    circuit_accuracy, model_accuracy, covered = accuracies
     figures = {part: PartFigures(**asdict(result.resources)) for part, result in checked.syntheses.items()}
     yosys = find_yosys()
     return BuildReport(
@@ -180,16 +194,22 @@ def _report(
             for part, cover in planned.covers.items()
         },
         proof=Proof(checked.status, checked.method, checked.proof_seconds),
-        care=Care(int(specification.pixel_care.sum()), covered),
+        care=Care(int(specification.care.sum()), measured.coverage, len(specification.care)),
         edges=_edges(planned, options),
-        accuracy=circuit_accuracy,
-        model_accuracy=model_accuracy,
+        accuracy=measured.accuracy,
+        model_accuracy=measured.model_accuracy,
+        confusion=measured.confusion,
+        model=model_figures(design.model),
+        command=command(name, options),
         options={
             **{
                 key: str(value) if isinstance(value, Path) else value
                 for key, value in asdict(options).items()
             },
-            "edge_patterns": specification.edge_filter.size,
+            "target": design.target,
+            "edge_patterns": specification.edge_filter.size
+            if isinstance(specification, Specification)
+            else None,
             "mapping": dict(planned.methods),
             "simulated_vectors": checked.vectors,
         },
@@ -200,7 +220,10 @@ def _report(
 
 
 def _edges(planned: Plan, options: CompileOptions) -> EdgeFigures:
-    edge_filter, agreement = planned.design.specification.edge_filter, planned.agreement
+    specification, agreement = planned.design.specification, planned.agreement
+    if not isinstance(specification, Specification):
+        return EdgeFigures()
+    edge_filter = specification.edge_filter
     figures = EdgeFigures(edge_filter.name, edge_filter.size)
     if agreement is None:
         return figures

@@ -1,14 +1,19 @@
-"""How often a model, or the circuit made of it, names the class that the mask shows."""
+"""How often a classifier of pictures, a model or a circuit, names the class that the mask shows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.dataset import Dataset
+from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, LutNetwork, bits_to_codes
+from wnn2hdl.ir import LutNetwork, bits_to_codes
 from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.squares import vote
+
+if TYPE_CHECKING:
+    from wnn2hdl.pipeline.classifiers import PictureClassifier
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,13 +22,15 @@ class Evaluation:
 
     Attributes:
         names: the images.
+        classes: class names, the background first.
         confusion: int64 ``[images, classes, classes]``, pixels by true class (rows) and answer (columns).
-        codes: int64 ``[2**width]``, pixels of each code over all images.
+        covered: int64 ``[images]``, pixels whose colours the classifier knows.
     """
 
     names: tuple[str, ...]
+    classes: tuple[str, ...]
     confusion: NDArray[np.int64]
-    codes: NDArray[np.int64]
+    covered: NDArray[np.int64]
 
     @property
     def accuracy(self) -> float:
@@ -32,45 +39,106 @@ class Evaluation:
         return float(np.trace(total) / total.sum())
 
     @property
-    def accuracies(self) -> dict[str, float]:
-        """The same for each image."""
-        right = np.trace(self.confusion, axis1=1, axis2=2)
-        return {
-            name: float(r / n)
-            for name, r, n in zip(self.names, right, self.confusion.sum(axis=(1, 2)), strict=True)
-        }
+    def coverage(self) -> float:
+        """Share of all pixels whose colours the classifier knows, 0 to 1."""
+        return float(self.covered.sum() / self.confusion.sum())
 
 
-def evaluate(
-    answers: NDArray[np.integer], encoder: BitSelect, dataset: Dataset, progress: Progress
-) -> Evaluation:
+def evaluate(classifier: "PictureClassifier", dataset: Dataset, progress: Progress) -> Evaluation:
     """Compare a classifier's answers with the labels of images.
 
+    A classifier that looks at neighbours sees a picture's borders repeated outwards.
+
     Args:
-        answers: class index for every code, ``[2**encoder.width]``: a pixel classifier is this table.
-        encoder: what makes codes of pixels.
+        classifier: what answers.
         dataset: the images; one is in memory at a time.
         progress: told of each image read.
 
     Raises:
-        InputError: an image cannot be read, or a label is none of the classifier's classes.
+        InputError: an image cannot be read, the classes are not those of the labels, or the classifier looks
+            at neighbours and an image has only some of its pixels labelled.
     """
-    classes = len(dataset.classes)
-    if answers.max() >= classes:
+    if classifier.classes != dataset.classes:
         raise InputError(
-            "the model has more classes than the masks",
-            value=f"{answers.max() + 1} and {classes}",
-            mend="give masks with a palette of the model's classes",
+            "the model and the masks have different classes",
+            value=f"{', '.join(classifier.classes)} / {', '.join(dataset.classes)}",
+            mend="give the masks a palette of the model's classes in their order",
         )
+    classes = len(dataset.classes)
     confusion = np.zeros((len(dataset), classes, classes), dtype=np.int64)
-    seen = np.zeros(len(answers), dtype=np.int64)
+    covered = np.zeros(len(dataset), dtype=np.int64)
     for position, image in enumerate(dataset):
-        codes = encoder.codes(image.pixels)
-        seen += np.bincount(codes, minlength=len(answers))
-        cells = image.labels.astype(np.int64) * classes + answers[codes]
-        confusion[position] = np.bincount(cells, minlength=classes**2).reshape(classes, classes)
+        picture, labels = _pictures(image, classifier.halo)
+        cells = labels.astype(np.int64) * classes + classifier.classify(picture)
+        confusion[position] = np.bincount(cells.ravel(), minlength=classes**2).reshape(classes, classes)
+        covered[position] = np.count_nonzero(classifier.covered(picture))
         progress("evaluating images", position + 1, len(dataset))
-    return Evaluation(dataset.names, confusion, seen)
+    return Evaluation(dataset.names, dataset.classes, confusion, covered)
+
+
+def _pictures(image: LabelledImage, halo: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """The picture with its halo, and its labels; pixels that make no picture as one row."""
+    if image.shape is None and not halo:
+        return image.pixels[np.newaxis], image.labels[np.newaxis]
+    return with_halo(image.picture, halo), image.label_picture
+
+
+def with_halo(picture: NDArray[np.uint8], halo: int) -> NDArray[np.uint8]:
+    """A picture, uint8 ``[height, width, 3]``, with its borders repeated ``halo`` pixels outwards."""
+    return np.pad(picture, ((halo, halo), (halo, halo), (0, 0)), mode="edge")
+
+
+@dataclass(frozen=True, eq=False)
+class SquareVote:
+    """A classifier that gives all pixels of a square the class of most of a random share of them.
+
+    It is for whole pictures: squares start at the top left corner of what it is given.
+
+    Attributes:
+        each: what classifies the single pixels.
+        side: pixels of a square's side.
+        share: of a square's pixels that vote, above 0, at most 1.
+        seed: of the draw.
+    """
+
+    each: "PictureClassifier"
+    side: int
+    share: float
+    seed: int
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """See `PictureClassifier.classes`."""
+        return self.each.classes
+
+    @property
+    def halo(self) -> int:
+        """See `PictureClassifier.halo`."""
+        return self.each.halo
+
+    def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """See `PictureClassifier.classify`."""
+        single = self.each.classify(picture)
+        return vote(single, None, side=self.side, share=self.share, seed=self.seed, count=len(self.classes))
+
+    def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
+        """See `PictureClassifier.covered`."""
+        return self.each.covered(picture)
+
+
+def majority_labels(dataset: Dataset, side: int) -> Dataset:
+    """The same images, every pixel labelled by the majority of its square: the truth about whole squares.
+
+    Raises:
+        InputError: when an image is read that has only some of its pixels labelled.
+    """
+
+    def load(name: str) -> LabelledImage:
+        image = dataset.load(name)
+        labels = vote(image.label_picture, None, side=side, share=1.0, seed=0, count=len(dataset.classes))
+        return replace(image, labels=labels.ravel())
+
+    return replace(dataset, load=load)
 
 
 def circuit_answers(network: LutNetwork) -> NDArray[np.int64]:

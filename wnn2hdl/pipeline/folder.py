@@ -12,6 +12,10 @@ from wnn2hdl.ir.files import make_folder
 
 REPORT_FILE = "report.json"
 REPORT_PAGE = "report.md"
+REPORT_HTML = "report.html"
+
+SAMPLE_FILE = "sample.png"
+"""The picture that `REPORT_HTML` shows through the circuit."""
 
 FAILED = "FAILED"
 """The file that marks a build whose circuit is not the model; it says why."""
@@ -56,3 +60,9 @@ def staged(target: Path) -> Iterator[Path]:
 def is_build(folder: Path) -> bool:
     """Whether a folder was written by `compile`: its manifest tells it from any other."""
     return (folder / MANIFEST_NAME).is_file()
+
+
+def require_build(folder: Path) -> None:
+    """Raise InputError unless a folder is a build."""
+    if not is_build(folder):
+        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")

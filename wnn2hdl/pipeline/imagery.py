@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.edges import canny, filter_agreement, grey, learned, learned_under_budget
 from wnn2hdl.edges.compare import Agreement
 from wnn2hdl.images import list_images, read_rgb
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, PictureEncoder, WisardModel
 from wnn2hdl.pipeline.training import Progress, pixel_encoder
 from wnn2hdl.tables import code_histogram, window_histogram
 from wnn2hdl.wisard import PixelClassifier
@@ -42,6 +42,11 @@ def survey(model: WisardModel, folder: Path, progress: Progress) -> Survey:
         codes += code_histogram(encoder, [picture])
         windows += window_histogram([classifier.classify(picture) != 0])
     return Survey(codes, windows)
+
+
+def survey_codes(encoder: PictureEncoder, folder: Path, progress: Progress) -> NDArray[np.int64]:
+    """Count the codes in a folder of pictures, int64 ``[2**width]``; raises as `survey` does."""
+    return code_histogram(encoder, _pictures(folder, progress))
 
 
 def learn_edges(

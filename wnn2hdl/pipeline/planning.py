@@ -7,13 +7,13 @@ import numpy as np
 
 from wnn2hdl.edges import Agreement, boundary, from_file, half_plane
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, LutNetwork, Neighbourhood, WisardModel
 from wnn2hdl.minimise import Minimised, espresso, map_luts
 from wnn2hdl.pipeline.design import Design, Mode, Style, Target, tables
-from wnn2hdl.pipeline.imagery import edge_agreement, learn_edges, survey
+from wnn2hdl.pipeline.imagery import edge_agreement, learn_edges, survey, survey_codes
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.tables import care_set
-from wnn2hdl.verify.specification import Specification
+from wnn2hdl.verify.specification import AnySpecification, NeighbourhoodSpecification, Specification
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class CompileOptions:
     """The user's choices.
 
     Attributes:
-        target: which circuit is the top of the Verilog.
+        target: which circuit is the top of the Verilog; None for all that the model has.
         mode: equal to the model on every input, or on the care set.
         care: folder of the imagery that makes the care set; needed in domain mode.
         care_minimum: how often a code must occur in it to be cared for.
@@ -34,7 +34,7 @@ class CompileOptions:
         sobel_threshold: the baseline's, 1 to 2040.
     """
 
-    target: Target = "block"
+    target: Target | None = None
     mode: Mode = "exact"
     care: Path | None = None
     care_minimum: int = 1
@@ -76,33 +76,51 @@ def plan(model: WisardModel, options: CompileOptions, progress: Progress) -> Pla
         InputError: the model reads no pixels, or imagery is needed and missing or unusable.
         CheckError: a minimised table differs from the model.
     """
+    target = _target(model, options)
     specification = _specify(model, options, progress)
     covers: dict[str, Minimised] = {}
     methods: dict[str, str] = {}
-    networks = []
-    for name, table in zip(("pixel", "edge"), tables(specification), strict=True):
+    networks: dict[str, LutNetwork] = {}
+    for name, table in tables(specification).items():
         progress(f"minimising {name}", 0, 2)
         covers[name] = espresso(table)
         progress(f"minimising {name}", 1, 2)
         mapping = map_luts(table, effort=options.effort)
         methods[name] = mapping.method
-        networks.append(mapping.network)
+        networks[name] = mapping.network
         progress(f"minimising {name}", 2, 2)
-    design = Design(specification, options.mode, options.target, options.style, *networks)
-    imagery = options.imagery
-    agreement = edge_agreement(specification.edge_filter, model, imagery, progress) if imagery else None
+    design = Design(specification, options.mode, target, options.style, networks)
+    imagery, agreement = options.imagery, None
+    if imagery and isinstance(specification, Specification):
+        agreement = edge_agreement(specification.edge_filter, model, imagery, progress)
     return Plan(design, covers, methods, agreement)
 
 
-def _specify(model: WisardModel, options: CompileOptions, progress: Progress) -> Specification:
+def _target(model: WisardModel, options: CompileOptions) -> Target:
+    if not isinstance(model.encoder, Neighbourhood):
+        if options.target == "neighbourhood":
+            raise InputError(
+                "the model does not look at neighbours",
+                value="target neighbourhood",
+                mend="train one with --neighbourhood, or choose another target",
+            )
+        return options.target or "block"
+    if options.target not in (None, "neighbourhood"):
+        raise InputError(
+            "the model looks at neighbours, so it is a circuit of its own",
+            value=f"target {options.target}",
+            mend="leave --target out",
+        )
+    return "neighbourhood"
+
+
+def _specify(model: WisardModel, options: CompileOptions, progress: Progress) -> AnySpecification:
+    if isinstance(model.encoder, Neighbourhood):
+        return _specify_neighbourhood(model, model.encoder, options, progress)
     edge_filter = _edge_filter(model, options, progress)
     if options.mode == "exact":
         return Specification.exact(model, edge_filter)
-    if options.care is None:
-        raise InputError(
-            "domain mode needs imagery that tells which codes occur", mend="give a folder with --care"
-        )
-    seen = survey(model, options.care, progress)
+    seen = survey(model, _care_imagery(options), progress)
     windows = seen.windows if seen.windows.any() else np.ones(WINDOW_CODES, dtype=np.int64)
     return Specification(
         model,
@@ -110,6 +128,23 @@ def _specify(model: WisardModel, options: CompileOptions, progress: Progress) ->
         care_set(seen.codes, options.care_minimum),
         care_set(windows, min(options.care_minimum, int(windows.max()))),
     )
+
+
+def _specify_neighbourhood(
+    model: WisardModel, encoder: Neighbourhood, options: CompileOptions, progress: Progress
+) -> NeighbourhoodSpecification:
+    if options.mode == "exact":
+        return NeighbourhoodSpecification(model, np.ones(1 << encoder.width, dtype=np.bool_))
+    seen = survey_codes(encoder, _care_imagery(options), progress)
+    return NeighbourhoodSpecification(model, care_set(seen, options.care_minimum))
+
+
+def _care_imagery(options: CompileOptions) -> Path:
+    if options.care is None:
+        raise InputError(
+            "domain mode needs imagery that tells which codes occur", mend="give a folder with --care"
+        )
+    return options.care
 
 
 def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress) -> EdgeFilter:

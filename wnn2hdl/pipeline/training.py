@@ -1,13 +1,14 @@
 """From labelled images to a trained model."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import MAX_TABLE_INPUTS, BitSelect, WisardModel
+from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect, PictureEncoder, WisardModel
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
 Progress = Callable[[str, int, int], None]
@@ -79,18 +80,47 @@ def train(
     return train_histogram(histograms.sum(axis=0), encoder, dataset.classes, mapping, threshold, training)
 
 
+def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> WisardModel:
+    """The model with a memory of the colours of its training images; these are read once more.
+
+    Raises:
+        InputError: an image cannot be read.
+    """
+    seen = np.zeros(1 << COLOURS.width, dtype=np.bool_)
+    for position, image in enumerate(dataset):
+        seen[COLOURS.codes(image.pixels)] = True
+        progress("noting colours", position + 1, len(dataset))
+    return replace(model, colours=np.flatnonzero(seen))
+
+
 def _histogram(image: LabelledImage, encoder: BitSelect, shape: tuple[int, int]) -> NDArray[np.int64]:
     cells = image.labels.astype(np.int64) * shape[1] + encoder.codes(image.pixels)
     return np.bincount(cells, minlength=shape[0] * shape[1]).reshape(shape)
 
 
 def pixel_encoder(model: WisardModel) -> BitSelect:
-    """The encoder of a model of pixels.
+    """The encoder of a model of single pixels.
 
     Raises:
-        InputError: the model reads features, not the bits of a pixel.
+        InputError: the model reads features, or looks at a pixel's neighbours.
     """
-    if not isinstance(model.encoder, BitSelect):
+    encoder = picture_encoder(model)
+    if not isinstance(encoder, BitSelect):
+        raise InputError(
+            "the model looks at more than one pixel",
+            value=f"at {encoder.size}x{encoder.size}",
+            mend="use one that was trained without --neighbourhood",
+        )
+    return encoder
+
+
+def picture_encoder(model: WisardModel) -> PictureEncoder:
+    """The encoder of a model of pixels or of neighbourhoods.
+
+    Raises:
+        InputError: the model reads features, not the bits of pixels.
+    """
+    if not isinstance(model.encoder, PictureEncoder):
         raise InputError(
             "the model does not read pixels",
             value=f"its encoder is of kind {model.encoder.kind}",

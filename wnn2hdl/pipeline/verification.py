@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.emit import check as check_manifest
-from wnn2hdl.errors import InputError, ModelFileError, ToolError
+from wnn2hdl.errors import ModelFileError, ToolError
 from wnn2hdl.ir.files import read_json
 from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import Circuits, circuits_of
 from wnn2hdl.pipeline.design import Design
-from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, is_build
+from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, require_build
 from wnn2hdl.pipeline.training import Progress
 
 
@@ -20,7 +20,7 @@ def open_build(folder: Path) -> tuple[Design, Circuits, dict[str, Any]]:
         InputError: the folder is no build.
         ModelFileError: one of its files is missing or damaged.
     """
-    _require_build(folder)
+    require_build(folder)
     design = Design.load(folder)
     return design, circuits_of(design, folder), read_json(folder / REPORT_FILE, "a report")
 
@@ -40,7 +40,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         InputError: the folder is no build.
         ToolError: an outside program is missing or failed.
     """
-    _require_build(folder)
+    require_build(folder)
     problems = check_manifest(folder)
     progress("checking hashes", 1, 1)
     if any("missing" in problem for problem in problems):
@@ -69,8 +69,3 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
                 f"{REPORT_FILE} says that {part} takes {told} LUTs; it takes {result.resources.luts}"
             )
     return problems, checked
-
-
-def _require_build(folder: Path) -> None:
-    if not is_build(folder):
-        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")

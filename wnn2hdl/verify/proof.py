@@ -11,6 +11,10 @@ every code is cared for, *h* is the identity.
 The edge bit of a side is masked by ``care_window`` of that side's own bits. If the proof succeeds, the bits
 of both sides are equal, hence so are the masks, and the edge bits are equal wherever the window is cared for.
 
+A neighbourhood's window is not held: the class bits of both sides are masked by ``care_neighbourhood`` of it.
+The mask is one function of the inputs on both sides, so masked outputs are equal for all windows exactly if
+the outputs are equal for the cared-for ones.
+
 The care set is not empty (`Specification` refuses that), so no claim holds vacuously.
 """
 
@@ -26,7 +30,15 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import ToolError
 from wnn2hdl.verify.equivalence import Circuit, evaluate, find_differences
 from wnn2hdl.verify.reference import care_verilog, reference_name, reference_verilog
-from wnn2hdl.verify.specification import PartName, Samples, Specification, pixels_to_word, word_to_pixels
+from wnn2hdl.verify.specification import (
+    AnySpecification,
+    NeighbourhoodSpecification,
+    PartName,
+    Samples,
+    Specification,
+    pixels_to_word,
+    word_to_pixels,
+)
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
 
@@ -79,7 +91,7 @@ class Proof:
         return "refuted" if self.counterexample else "proved"
 
 
-def prove(specification: Specification, verilog: Mapping[PartName, Path]) -> dict[PartName, Proof]:
+def prove(specification: AnySpecification, verilog: Mapping[PartName, Path]) -> dict[PartName, Proof]:
     """Prove emitted circuits equal to the model, on every cared-for input.
 
     Args:
@@ -115,7 +127,7 @@ def prove(specification: Specification, verilog: Mapping[PartName, Path]) -> dic
 
 
 def prove_netlists(
-    specification: Specification, netlists: Mapping[PartName, tuple[Path, Path]]
+    specification: AnySpecification, netlists: Mapping[PartName, tuple[Path, Path]]
 ) -> dict[PartName, Proof]:
     """Prove mapped netlists equal to the Verilog they were mapped from, on every input.
 
@@ -148,13 +160,23 @@ def prove_netlists(
     return {part: Proof(METHOD, seconds, found) for part, found in counterexamples.items()}
 
 
-def held_in_care(specification: Specification, part: PartName, source: str, module: str) -> Circuit:
+def held_in_care(specification: AnySpecification, part: PartName, source: str, module: str) -> Circuit:
     """A circuit in the wrapper that holds its inputs inside the care set (see the top of this file)."""
     ports = specification.part(part)
     header = [f"input [{width - 1}:0] {port}" for port, width in ports.inputs.items()]
     header += [f"output [{width - 1}:0] {port}" for port, width in ports.outputs.items()]
     nets = {port: port for port in (*ports.inputs, *ports.outputs)}
     lines = [f"module held({', '.join(header)});"]
+    if isinstance(specification, NeighbourhoodSpecification):
+        nets["class_bits"] = "any_class_bits"
+        width = specification.class_width
+        lines += [
+            f"  wire [{width - 1}:0] any_class_bits;",
+            "  wire cared;",
+            "  care_neighbourhood care (.window(window), .cared(cared));",
+            f"  assign class_bits = any_class_bits & {{{width}{{cared}}}};",
+        ]
+        return _wrapped(specification, lines, module, nets, source)
     for port, width in ports.inputs.items():
         if port in ("rgb", "window"):
             nets[port] = "held_pixels"
@@ -169,19 +191,26 @@ def held_in_care(specification: Specification, part: PartName, source: str, modu
             "  care_window care_window (.bits(bits), .cared(cared));",
             "  assign edge_bit = any_edge_bit & cared;",
         ]
+    return _wrapped(specification, lines, module, nets, source)
+
+
+def _wrapped(
+    specification: AnySpecification, lines: list[str], module: str, nets: dict[str, str], source: str
+) -> Circuit:
     connections = ", ".join(f".{port}({net})" for port, net in nets.items())
-    lines += [f"  {module} circuit ({connections});", "endmodule", ""]
-    return Circuit(("\n".join(lines), care_verilog(specification), source), "held")
+    wrapper = "\n".join([*lines, f"  {module} circuit ({connections});", "endmodule", ""])
+    return Circuit((wrapper, care_verilog(specification), source), "held")
 
 
 def _against_model(
-    specification: Specification, part: PartName, source: str, values: dict[str, int]
+    specification: AnySpecification, part: PartName, source: str, values: dict[str, int]
 ) -> Counterexample:
     """The counterexample of the wrapper, as the circuit inside it sees it."""
     held = dict(values)
-    for port in {"rgb", "window"} & held.keys():
-        pixels = word_to_pixels(held[port], specification.part(part).inputs[port] // 24)
-        held[port] = pixels_to_word(specification.nearest_cared(pixels))
+    if isinstance(specification, Specification):
+        for port in {"rgb", "window"} & held.keys():
+            pixels = word_to_pixels(held[port], specification.part(part).inputs[port] // 24)
+            held[port] = pixels_to_word(specification.nearest_cared(pixels))
     samples = _samples(specification, part, held)
     expected = {port: int(column[0]) for port, column in specification.evaluate(part, samples).items()}
     actual = _answers(specification, part, Circuit((source,), specification.part(part).module), held)
@@ -191,13 +220,13 @@ def _against_model(
 
 
 def _answers(
-    specification: Specification, part: PartName, circuit: Circuit, values: dict[str, int]
+    specification: AnySpecification, part: PartName, circuit: Circuit, values: dict[str, int]
 ) -> dict[str, int]:
     ports = specification.part(part)
     return evaluate(circuit, values, ports.inputs, tuple(ports.outputs))
 
 
-def _samples(specification: Specification, part: PartName, values: dict[str, int]) -> Samples:
+def _samples(specification: AnySpecification, part: PartName, values: dict[str, int]) -> Samples:
     """Port values as arrays of one sample."""
     samples: Samples = {}
     for port, width in specification.part(part).inputs.items():

@@ -14,8 +14,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import WINDOW_BITS, EdgeFilter
-from wnn2hdl.verify.specification import PartName, Specification
+from wnn2hdl.ir import WINDOW_BITS, EdgeFilter, WisardModel
+from wnn2hdl.verify.specification import (
+    AnySpecification,
+    NeighbourhoodSpecification,
+    PartName,
+    Specification,
+)
 
 
 def reference_name(part: PartName) -> str:
@@ -23,8 +28,10 @@ def reference_name(part: PartName) -> str:
     return f"reference_{part}"
 
 
-def reference_verilog(specification: Specification) -> str:
-    """The five reference modules, Verilog-2001."""
+def reference_verilog(specification: AnySpecification) -> str:
+    """The reference modules, Verilog-2001: the five of a block, or the one of a neighbourhood."""
+    if isinstance(specification, NeighbourhoodSpecification):
+        return _neighbourhood(specification)
     return "\n".join(
         [
             _pixel(specification),
@@ -36,12 +43,15 @@ def reference_verilog(specification: Specification) -> str:
     )
 
 
-def care_verilog(specification: Specification) -> str:
-    """Two modules that hold the inputs of a proof inside the care set.
+def care_verilog(specification: AnySpecification) -> str:
+    """The modules by which the wrapper of a proof knows the care set.
 
+    ``care_neighbourhood`` tells whether a window of a neighbourhood is cared for. All others have two:
     ``care_pixel`` passes on a pixel whose code is cared for and replaces any other by one that is: its output
     runs over all cared-for pixels and no others. ``care_window`` tells whether a binary window is cared for.
     """
+    if isinstance(specification, NeighbourhoodSpecification):
+        return _care_neighbourhood(specification)
     free = [f"free[{position}]" for position in specification.encoder.pixel_positions]
     pixel_lines, pixel_cared = lookup("n", specification.pixel_care, free)
     window = [f"bits[{i}]" for i in range(WINDOW_BITS)]
@@ -95,13 +105,67 @@ def lookup(prefix: str, contents: NDArray[np.bool_], address: Sequence[str]) -> 
 
 
 def _pixel(specification: Specification) -> str:
-    model, encoder = specification.model, specification.encoder
+    encoder, class_width = specification.encoder, specification.class_width
     code_bits = ", ".join(f"rgb[{position}]" for position in reversed(encoder.pixel_positions))
-    sum_width, class_width = model.rams.bit_length(), specification.class_width
-    lines = [
-        f"module {reference_name('pixel')}(input [23:0] rgb, output [{class_width - 1}:0] class_bits);",
-        f"  wire [{encoder.width - 1}:0] code = {{{code_bits}}};",
-    ]
+    return "\n".join(
+        [
+            f"module {reference_name('pixel')}(input [23:0] rgb, output [{class_width - 1}:0] class_bits);",
+            f"  wire [{encoder.width - 1}:0] code = {{{code_bits}}};",
+            *_winner(specification.model, class_width),
+            "endmodule",
+            "",
+        ]
+    )
+
+
+def _neighbourhood(specification: NeighbourhoodSpecification) -> str:
+    ((port, width),) = specification.part("neighbourhood").inputs.items()
+    class_width = specification.class_width
+    return "\n".join(
+        [
+            f"module {reference_name('neighbourhood')}(input [{width - 1}:0] {port}, "
+            f"output [{class_width - 1}:0] class_bits);",
+            *_window_code(specification),
+            *_winner(specification.model, class_width),
+            "endmodule",
+            "",
+        ]
+    )
+
+
+def _care_neighbourhood(specification: NeighbourhoodSpecification) -> str:
+    ((port, width),) = specification.part("neighbourhood").inputs.items()
+    address = [f"code[{i}]" for i in range(specification.encoder.width)]
+    lines, cared = lookup("n", specification.care, address)
+    return "\n".join(
+        [
+            f"module care_neighbourhood(input [{width - 1}:0] {port}, output cared);",
+            *_window_code(specification),
+            *lines,
+            f"  assign cared = {cared};",
+            "endmodule",
+            "",
+        ]
+    )
+
+
+def _window_code(specification: NeighbourhoodSpecification) -> list[str]:
+    """Lines that make the wire ``code`` of a window: each tap's table at its pixel."""
+    encoder = specification.encoder
+    lines, bits = [], []
+    for i, tap in enumerate(encoder.taps):
+        low = 24 * (encoder.size * tap.row + tap.column)
+        address = [f"window[{low + position}]" for position in tap.pixel.pixel_positions]
+        tap_lines, bit = lookup(f"tap_{i}", tap.table, address)
+        lines += tap_lines
+        bits.append(bit)
+    return [*lines, f"  wire [{encoder.width - 1}:0] code = {{{', '.join(reversed(bits))}}};"]
+
+
+def _winner(model: WisardModel, class_width: int) -> list[str]:
+    """Lines that drive ``class_bits`` with the winning class for the wire ``code``."""
+    sum_width = model.rams.bit_length()
+    lines = []
     fires = model.counts >= model.bleaching
     for discriminator in range(len(model.classes)):
         mapping = model.mapping[discriminator if len(model.mapping) > 1 else 0]
@@ -126,8 +190,7 @@ def _pixel(specification: Specification) -> str:
             f"  wire [{class_width - 1}:0] class_{challenger} = "
             f"wins_{challenger} ? {class_width}'d{challenger} : class_{last};",
         ]
-    lines += [f"  assign class_bits = class_{len(model.classes) - 1};", "endmodule", ""]
-    return "\n".join(lines)
+    return [*lines, f"  assign class_bits = class_{len(model.classes) - 1};"]
 
 
 def _edge(edge_filter: EdgeFilter) -> str:

@@ -1,7 +1,7 @@
 """What a circuit has to compute, and on which inputs: the model itself, in NumPy."""
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from wnn2hdl.ir import (
     WINDOW_CODES,
     BitSelect,
     EdgeFilter,
+    Neighbourhood,
     WisardModel,
     bits_to_codes,
     codes_to_bits,
@@ -20,13 +21,14 @@ from wnn2hdl.ir import (
 
 Samples = dict[str, NDArray[Any]]
 """Values of ports, by name: int64 ``[samples]``, except that ``rgb`` is uint8 ``[samples, 3]`` and ``window``
-uint8 ``[samples, 9, 3]``, pixels in the order of a window's bits, channels in that of
-`wnn2hdl.ir.CHANNELS`."""
+uint8 ``[samples, pixels, 3]``, pixels row by row, channels in the order of `wnn2hdl.ir.CHANNELS`."""
 
-PartName = Literal["pixel", "edge", "match", "block", "block_match"]
-"""The circuits that are emitted: a block is nine pixels and the edge filter; block_match adds the matcher."""
+PartName = Literal["pixel", "edge", "match", "block", "block_match", "neighbourhood"]
+"""The circuits that are emitted: a block is nine pixels and the edge filter; block_match adds the matcher. A
+neighbourhood stands alone."""
 
-PART_NAMES: tuple[PartName, ...] = get_args(PartName)
+PART_NAMES: tuple[PartName, ...] = ("pixel", "edge", "match", "block", "block_match")
+"""The circuits of a `Specification`."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,11 @@ class Specification:
         """The model's encoder."""
         assert isinstance(self.model.encoder, BitSelect)
         return self.model.encoder
+
+    @property
+    def care(self) -> NDArray[np.bool_]:
+        """The codes of the encoder that matter."""
+        return self.pixel_care
 
     @property
     def class_width(self) -> int:
@@ -158,6 +165,61 @@ class Specification:
         codes = self.encoder.codes(pixels)
         bits = codes_to_bits(codes.reshape(-1), self.encoder.width)
         return self.model.evaluate(bits).reshape(codes.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class NeighbourhoodSpecification:
+    """A model of a pixel and its neighbours, and the inputs on which a circuit must equal it.
+
+    Attributes:
+        model: its encoder is a `Neighbourhood`.
+        care: bool ``[2**encoder.width]``, the codes of windows that matter; all of them in exact mode.
+    """
+
+    model: WisardModel
+    care: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.model.encoder, Neighbourhood):
+            raise InputError("the model does not look at neighbours", value=self.model.encoder.kind)
+        if self.care.shape != (1 << self.model.encoder.width,) or self.care.dtype != np.bool_:
+            raise ValueError(f"the care set does not fit the model: {self.care.dtype} {self.care.shape}")
+        if not self.care.any():
+            raise InputError("the care set is empty, so there is nothing to prove", mend="give other imagery")
+
+    @property
+    def encoder(self) -> Neighbourhood:
+        """The model's encoder."""
+        assert isinstance(self.model.encoder, Neighbourhood)
+        return self.model.encoder
+
+    @property
+    def class_width(self) -> int:
+        """Bits of a class index: 1 for two classes."""
+        return (len(self.model.classes) - 1).bit_length()
+
+    def part(self, name: PartName) -> Part:
+        """The ports of the one circuit, ``neighbourhood``."""
+        pixels = self.encoder.size**2
+        return {
+            "neighbourhood": Part(
+                "neighbourhood", {"window": pixels * 8 * len(CHANNELS)}, {"class_bits": self.class_width}
+            )
+        }[name]
+
+    def codes(self, windows: NDArray[np.uint8]) -> NDArray[np.uint32]:
+        """Codes of windows, uint8 ``[samples, size * size, 3]``: uint32 ``[samples]``."""
+        size = self.encoder.size
+        return self.encoder.codes(windows.reshape(-1, size, size, len(CHANNELS)))[:, 0, 0]
+
+    def evaluate(self, part: PartName, inputs: Samples) -> Samples:
+        """The model's outputs, on every input, cared for or not; as `Specification.evaluate`."""
+        (output,) = self.part(part).outputs
+        bits = codes_to_bits(self.codes(inputs["window"]), self.encoder.width)
+        return {output: self.model.evaluate(bits)}
+
+
+AnySpecification = Specification | NeighbourhoodSpecification
 
 
 def word_to_pixels(word: int, pixels: int) -> NDArray[np.uint8]:

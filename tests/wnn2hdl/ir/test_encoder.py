@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect, Thermometer, codes_to_bits
+from wnn2hdl.ir import (
+    PIXEL_BIT_NAMES,
+    PIXEL_BITS,
+    BitSelect,
+    Encoder,
+    Neighbourhood,
+    Tap,
+    Thermometer,
+    codes_to_bits,
+)
 from wnn2hdl.ir.encoder import encoder_from_json
 
 selections = st.lists(st.sampled_from(sorted(PIXEL_BIT_NAMES)), min_size=1, unique=True).map(
@@ -15,6 +24,21 @@ levels = st.lists(st.floats(allow_nan=False, allow_infinity=False), unique=True,
     lambda values: tuple(sorted(values))
 )
 thermometers = st.lists(levels, min_size=1, max_size=4).filter(any).map(lambda t: Thermometer(tuple(t)))
+few_bits = st.lists(st.sampled_from(sorted(PIXEL_BIT_NAMES)), min_size=1, max_size=5, unique=True)
+
+
+@st.composite
+def neighbourhoods(draw: st.DrawFn) -> Neighbourhood:
+    size = draw(st.sampled_from([1, 3, 5]))
+    places = st.integers(0, size - 1)
+    taps = []
+    for _ in range(draw(st.integers(1, 4))):
+        pixel = BitSelect(tuple(draw(few_bits)))
+        contents = draw(st.integers(0, (1 << (1 << pixel.width)) - 1))
+        taps.append(Tap(draw(places), draw(places), pixel, contents))
+    return Neighbourhood(size, tuple(taps))
+
+
 pixels = st.lists(st.tuples(*[st.integers(0, 255)] * 3), min_size=1, max_size=20)
 
 
@@ -72,8 +96,43 @@ def test_thermometer_bits_of_a_feature_never_rise(encoder: Thermometer, data: st
         start += len(thresholds)
 
 
-@given(st.one_of(selections, thermometers))
-def test_json_gives_the_encoder_back(encoder: BitSelect | Thermometer) -> None:
+@given(neighbourhoods(), st.integers(0, 2**32 - 1))
+def test_a_neighbourhood_asks_each_tap_about_its_own_pixel(encoder: Neighbourhood, seed: int) -> None:
+    picture = np.random.default_rng(seed).integers(0, 256, (6, 7, 3), dtype=np.uint8)
+    codes = encoder.codes(picture)
+    assert codes.shape == (6 - 2 * encoder.halo, 7 - 2 * encoder.halo)
+    for row, column in np.ndindex(*codes.shape):
+        for bit, tap in enumerate(encoder.taps):
+            code = int(tap.pixel.codes(picture[row + tap.row, column + tap.column]))
+            assert codes[row, column] >> bit & 1 == tap.contents >> code & 1
+
+
+def test_a_picture_smaller_than_the_window_has_no_codes() -> None:
+    encoder = Neighbourhood(5, (Tap(4, 0, BitSelect(("R7",)), 0b10),))
+    assert encoder.codes(np.zeros((4, 9, 3), dtype=np.uint8)).shape == (0, 5)
+
+
+def test_a_tap_and_its_table_are_one() -> None:
+    table = np.array([True, False, False, True])
+    tap = Tap.of(0, 0, BitSelect(("R7", "G7")), table)
+    assert tap.contents == 0b1001
+    assert tap.table.tolist() == table.tolist()
+
+
+def test_taps_that_no_window_has() -> None:
+    pixel = BitSelect(("R7",))
+    with pytest.raises(ValueError, match="do not fit 1 bits"):
+        Tap(0, 0, pixel, 0b100)
+    with pytest.raises(ValueError, match="odd size, not 4"):
+        Neighbourhood(4, (Tap(0, 0, pixel, 1),))
+    with pytest.raises(ValueError, match="at least one tap"):
+        Neighbourhood(3, ())
+    with pytest.raises(ValueError, match="row 3, column 0 is outside of 3x3"):
+        Neighbourhood(3, (Tap(3, 0, pixel, 1),))
+
+
+@given(st.one_of(selections, thermometers, neighbourhoods()))
+def test_json_gives_the_encoder_back(encoder: Encoder) -> None:
     assert encoder_from_json(json.loads(json.dumps(encoder.to_json()))) == encoder
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import ModelFileError
-from wnn2hdl.ir import PIXEL_BIT_NAMES, BitSelect, WisardModel, codes_to_bits
+from wnn2hdl.ir import PIXEL_BIT_NAMES, BitSelect, Neighbourhood, Tap, WisardModel, codes_to_bits
 from wnn2hdl.ir.model import VERSION
 
 
@@ -39,6 +39,7 @@ def models(draw: st.DrawFn) -> WisardModel:
         counts=rng.integers(0, 4, (classes, rams, 1 << address_bits)),
         bleaching=draw(st.integers(1, 3)),
         training=draw(st.dictionaries(st.text(max_size=5), st.integers() | st.text(max_size=5), max_size=3)),
+        colours=draw(st.none() | st.sets(st.integers(0, 4095), max_size=4).map(sorted).map(np.array)),
     )
 
 
@@ -100,7 +101,8 @@ def test_the_digest_sees_what_decides_answers_and_nothing_else() -> None:
     model = hand_worked()
     counts = model.counts.copy()
     counts[1, 1, 3] += 1
-    assert model.digest() == replace(model, training={"seed": 8}).digest()
+    told = replace(model, training={"seed": 8}, colours=np.array([7]))
+    assert model.digest() == told.digest()
     others = [
         replace(model, counts=counts),
         replace(model, bleaching=3),
@@ -156,6 +158,8 @@ def broken(**changes: object) -> dict[str, Any]:
         (broken(extra=1), "the model file is damaged: .*at the top level"),
         (broken(classes=["a"]), "the model file is damaged: .*at classes"),
         (broken(encoder={"kind": "bits", "bits": ["X9"]}), "the model file is damaged: .*at encoder"),
+        (broken(colours=[4096]), "the model file is damaged: .*at colours"),
+        (broken(colours=[1, 1]), "the model file is damaged: .*at colours"),
         (broken(counts=[[], []]), "the model file is damaged: .*at counts/"),
         (broken(rams=3), "the model contradicts itself: .*rams and address_bits say"),
         (broken(mapping=[[[0, 1], [2]]]), "the model contradicts itself"),
@@ -236,3 +240,35 @@ def test_a_missing_file_or_a_folder_gets_one_line(tmp_path: Path) -> None:
         WisardModel.load(tmp_path / "m.json")
     with pytest.raises(ModelFileError, match=r"cannot read a model: .*[Dd]irectory"):
         WisardModel.load(tmp_path)
+
+
+def neighbourhood() -> WisardModel:
+    taps = (Tap(1, 1, BitSelect(("R7", "G7")), 0b0110), Tap(0, 2, BitSelect(("B7",)), 0b10))
+    return replace(hand_worked(), encoder=Neighbourhood(3, taps), mapping=np.array([[[0, 1], [1, 0]]]))
+
+
+def test_a_model_of_a_neighbourhood_comes_back_from_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "model.json"
+    neighbourhood().save(path)
+    loaded = WisardModel.load(path)
+    assert loaded.encoder == neighbourhood().encoder
+    assert loaded.digest() == neighbourhood().digest()
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("contents", "0X6", "damaged"),
+        ("contents", "1ffff", "contradicts itself"),
+        ("row", 3, "contradicts itself"),
+        ("row", -1, "damaged"),
+        ("bits", ["R8"], "damaged"),
+    ],
+)
+def test_a_damaged_tap_is_told(tmp_path: Path, key: str, value: Any, message: str) -> None:
+    path = tmp_path / "model.json"
+    data = neighbourhood().to_json()
+    data["encoder"]["taps"][0][key] = value
+    path.write_text(json.dumps(data))
+    with pytest.raises(ModelFileError, match=message):
+        WisardModel.load(path)

@@ -1,13 +1,15 @@
 """A model file, a build and a picture give one and the same answer."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError, ModelFileError
-from wnn2hdl.ir import Thermometer, WisardModel, codes_to_bits
-from wnn2hdl.pipeline.classifiers import familiar_codes, model_classifier, open_classifier
+from wnn2hdl.ir import COLOURS, LutNetwork, Thermometer, WisardModel, codes_to_bits
+from wnn2hdl.pipeline.classifiers import circuit_classifier, familiar_codes, model_classifier, open_classifier
+from wnn2hdl.pipeline.verification import open_build
 from wnn2hdl.samples import landscape
 from wnn2hdl.wisard import PixelClassifier
 
@@ -29,11 +31,34 @@ def test_a_build_answers_as_its_model_where_it_cares(model: WisardModel, build: 
     assert np.array_equal(circuit.classify(PICTURE)[cared], trained.classify(PICTURE)[cared])
 
 
+def test_an_answer_that_is_no_class_is_taken_for_the_last_one(build: Path) -> None:
+    design, _, _ = open_build(build)
+    inputs = design.decision.inputs
+    nought_or_three = LutNetwork(inputs, (), (("class_bit0", inputs[0]), ("class_bit1", inputs[0])))
+    changed = replace(design, networks={**design.networks, "pixel": nought_or_three})
+    assert np.unique(circuit_classifier(changed).classify(PICTURE)).tolist() == [0, 1]
+
+
 def test_colours_of_the_training_are_familiar_and_foreign_ones_are_not(model: WisardModel) -> None:
     classifier = model_classifier(model)
     assert classifier.covered(landscape(64, 64, seed=1).image).all()
     violet = np.full((2, 3, 3), (255, 0, 255), dtype=np.uint8)
     assert not classifier.covered(violet).any()
+
+
+def test_a_model_that_remembers_its_colours_knows_no_others(model: WisardModel) -> None:
+    codes = COLOURS.codes(PICTURE)
+    model = replace(model, colours=np.unique(codes)[:-1].astype(np.int64))
+    assert np.array_equal(model_classifier(model).covered(PICTURE), codes != codes.max())
+
+
+def test_the_circuit_of_a_build_remembers_its_colours_too(build: Path) -> None:
+    design, _, _ = open_build(build)
+    remembering = replace(design.model, colours=np.array([0], dtype=np.int64))
+    circuit = replace(circuit_classifier(design), care=np.ones(256, dtype=np.bool_))
+    assert circuit.covered(PICTURE).all()
+    known = replace(circuit, colours=model_classifier(remembering).colours)
+    assert not known.covered(PICTURE).any()
 
 
 def test_what_was_seen_too_rarely_to_fire_is_familiar_all_the_same(model: WisardModel) -> None:

@@ -105,4 +105,4 @@ def test_a_design_survives_its_file(build: Path, tmp_path: Path) -> None:
     design.save(tmp_path)
     for name in ("design.json", "model.json"):
         assert (tmp_path / name).read_bytes() == (build / name).read_bytes()
-    assert isinstance(design.pixel, LutNetwork)
+    assert all(isinstance(network, LutNetwork) for network in design.networks.values())

@@ -7,17 +7,25 @@ import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir import EdgeFilter, WisardModel
+from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.planning import CompileOptions, plan
+from wnn2hdl.verify.specification import Specification
 
 
 def silent(step: str, done: int, total: int) -> None:
     pass
 
 
+def edge_filter(design: Design) -> EdgeFilter:
+    assert isinstance(design.specification, Specification)
+    return design.specification.edge_filter
+
+
 def test_exact_mode_cares_for_every_code(model: WisardModel) -> None:
     specification = plan(model, CompileOptions(), silent).design.specification
-    assert specification.pixel_care.all()
+    assert isinstance(specification, Specification)
+    assert specification.care.all()
     assert specification.window_care.all()
     assert specification.edge_filter.name == "boundary"
 
@@ -29,17 +37,15 @@ def test_domain_mode_cares_for_what_occurs_often_enough(model: WisardModel, imag
         ).design.specification
         for minimum in (1, 50)
     ]
-    assert 0 < cared[1].pixel_care.sum() < cared[0].pixel_care.sum() < 2**8
-    assert (cared[1].pixel_care <= cared[0].pixel_care).all()
+    assert 0 < cared[1].care.sum() < cared[0].care.sum() < 2**8
+    assert (cared[1].care <= cared[0].care).all()
 
 
 def test_the_networks_equal_the_model_where_it_is_cared_for(model: WisardModel, imagery: Path) -> None:
     planned = plan(model, CompileOptions(mode="domain", care=imagery), silent)
     specification = planned.design.specification
-    answers = planned.design.pixel.evaluate(np.arange(2**8))[:, 0]
-    assert np.array_equal(
-        answers[specification.pixel_care], model.evaluate_all_codes()[specification.pixel_care] != 0
-    )
+    answers = planned.design.decision.evaluate(np.arange(2**8))[:, 0]
+    assert np.array_equal(answers[specification.care], model.evaluate_all_codes()[specification.care] != 0)
     assert len(planned.covers["pixel"].cover.cubes) <= planned.covers["pixel"].cubes_before
     assert planned.agreement is not None
     assert planned.agreement.f1 is not None
@@ -49,16 +55,16 @@ def test_edges_from_a_file_or_learned(model: WisardModel, imagery: Path, tmp_pat
     path = tmp_path / "edges.json"
     path.write_text(json.dumps([16, 17]))
     design = plan(model, CompileOptions(edges=str(path)), silent).design
-    assert np.flatnonzero(design.specification.edge_filter.patterns).tolist() == [16, 17]
+    assert np.flatnonzero(edge_filter(design).patterns).tolist() == [16, 17]
     options = CompileOptions(edges="learned", edge_images=imagery, edge_patterns=12)
-    assert plan(model, options, silent).design.specification.edge_filter.size == 12
+    assert edge_filter(plan(model, options, silent).design).size == 12
 
 
 def test_a_learned_filter_can_be_held_to_few_luts(model: WisardModel, imagery: Path) -> None:
     options = CompileOptions(edges="learned", edge_images=imagery, edge_luts=2, edge_patterns=75)
     design = plan(model, options, silent).design
-    assert design.specification.edge_filter.size == 75
-    assert len(design.edge.luts) <= 2
+    assert edge_filter(design).size == 75
+    assert len(design.networks["edge"].luts) <= 2
 
 
 def test_missing_imagery_is_asked_for(model: WisardModel) -> None:

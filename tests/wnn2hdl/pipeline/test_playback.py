@@ -26,6 +26,7 @@ def test_every_window_of_a_picture_runs_and_the_waves_are_recorded(
     assert result.cared == 1.0
     model_says = PixelClassifier(model).classify(read_rgb(picture)) != 0
     assert np.array_equal(result.foreground, model_says[1:-1, 1:-1])
+    assert result.edges is not None
     assert result.edges.any()
     assert "edge_bit" in (tmp_path / "waves.vcd").read_text()
 

@@ -14,7 +14,7 @@ from wnn2hdl.pipeline.simulating import simulate_apart, simulate_parts
 @pytest.mark.slow
 def test_a_right_circuit_runs_on_every_cared_for_code(pixel_build: Path) -> None:
     design = Design.load(pixel_build)
-    cared = int(design.specification.pixel_care.sum())
+    cared = int(design.specification.care.sum())
     assert simulate_parts(design, ["pixel"]) == ({"pixel": cared}, None)
     assert simulate_apart(pixel_build, ["pixel"]) == ({"pixel": cared}, None)
 
@@ -22,8 +22,8 @@ def test_a_right_circuit_runs_on_every_cared_for_code(pixel_build: Path) -> None
 @pytest.mark.slow
 def test_a_wrong_circuit_is_told_in_words(pixel_build: Path, tmp_path: Path) -> None:
     design = Design.load(pixel_build)
-    stuck = LutNetwork(design.pixel.inputs, (), (("class_bit0", "1"),))
-    replace(design, pixel=stuck).save(tmp_path)
+    stuck = LutNetwork(design.decision.inputs, (), (("class_bit0", "1"),))
+    replace(design, networks={**design.networks, "pixel": stuck}).save(tmp_path)
     vectors, failure = simulate_apart(tmp_path, ["pixel"])
     assert vectors == {}
     assert failure is not None

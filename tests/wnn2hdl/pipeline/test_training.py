@@ -6,9 +6,10 @@ import pytest
 from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, from_samples
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import LutNetwork, Thermometer, WisardModel
-from wnn2hdl.pipeline.evaluation import circuit_answers, evaluate
-from wnn2hdl.pipeline.training import image_histograms, pixel_encoder, train
+from wnn2hdl.ir import COLOURS, Thermometer, WisardModel
+from wnn2hdl.pipeline.classifiers import model_classifier
+from wnn2hdl.pipeline.evaluation import evaluate
+from wnn2hdl.pipeline.training import image_histograms, pixel_encoder, train, with_colours
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -31,10 +32,7 @@ def test_the_embedded_landscapes_are_learned() -> None:
         seed=0,
         progress=silent,
     )
-    result = evaluate(model.evaluate_all_codes(), pixel_encoder(model), from_samples(2, 96, seed=90), silent)
-    assert result.accuracy > 0.8
-    assert list(result.accuracies) == ["landscape-00090", "landscape-00091"]
-    assert result.codes.sum() == 2 * 96 * 96
+    assert evaluate(model_classifier(model), from_samples(2, 96, seed=90), silent).accuracy > 0.8
 
 
 def test_histograms_count_every_pixel_by_image_and_class() -> None:
@@ -51,25 +49,18 @@ def test_more_bits_than_a_table_holds_are_refused() -> None:
         image_histograms(two_pixels(1), high_bits(7), silent)
 
 
-def test_an_evaluation_counts_by_true_class_and_answer() -> None:
-    always_forest = np.zeros(2, dtype=np.int64)
-    result = evaluate(always_forest, parse_bits("R7"), two_pixels(1), silent)
-    assert result.confusion.tolist() == [[[1, 0], [1, 0]]]
-    assert result.accuracy == 0.5
-
-
-def test_more_classes_than_the_masks_have_are_refused() -> None:
-    with pytest.raises(InputError, match="more classes than the masks"):
-        evaluate(np.array([0, 2]), parse_bits("R7"), two_pixels(1), silent)
-
-
-def test_a_circuits_answers_are_class_indices() -> None:
-    network = LutNetwork(("a", "b"), (), (("class_bit0", "b"), ("class_bit1", "a")))
-    assert circuit_answers(network).tolist() == [0, 2, 1, 3]
-
-
 def test_a_model_of_features_is_no_pixel_model() -> None:
     counts = np.zeros((2, 1, 2), dtype=np.int64)
     model = WisardModel(Thermometer(((0.5,),)), ("a", "b"), np.zeros((1, 1, 1), dtype=np.int64), counts, 1)
     with pytest.raises(InputError, match="does not read pixels"):
         pixel_encoder(model)
+
+
+def test_a_model_remembers_the_colours_it_was_shown() -> None:
+    dataset = from_samples(2, 32, seed=3)
+    model = train(dataset, parse_bits("R7,G7"), address_bits=2, rams=1, bleaching=1, seed=0, progress=silent)
+    remembering = with_colours(model, dataset, silent)
+    shown = np.concatenate([image.pixels for image in dataset])
+    assert remembering.colours is not None
+    assert np.array_equal(remembering.colours, np.unique(COLOURS.codes(shown)))
+    assert remembering.digest() == model.digest()

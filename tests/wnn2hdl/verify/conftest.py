@@ -6,8 +6,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from wnn2hdl.ir import BitSelect, EdgeFilter, WisardModel, codes_to_bits
-from wnn2hdl.verify.specification import PartName, Specification
+from wnn2hdl.ir import BitSelect, EdgeFilter, Neighbourhood, Tap, WisardModel, codes_to_bits
+from wnn2hdl.verify.specification import NeighbourhoodSpecification, PartName, Specification
 
 ENCODER = BitSelect(("R7", "R6", "G7", "G6", "B7", "B5"))
 
@@ -28,6 +28,42 @@ def random_specification(seed: int, *, classes: int = 2, care: float = 1.0) -> S
     if care == 1.0:
         return Specification.exact(model, edge_filter)
     return Specification(model, edge_filter, rng.random(64) < care, rng.random(512) < care)
+
+
+def random_neighbourhood(seed: int, *, classes: int = 2, care: float = 1.0) -> NeighbourhoodSpecification:
+    """Five random taps, two of them at one pixel, and random RAMs over them."""
+    rng = np.random.default_rng(seed)
+    names = [("R7", "G6"), ("G6", "B5"), ("R3",), ("R7", "B7", "G2"), ("B0", "G7")]
+    places = [(1, 1), (1, 1), (0, 0), (0, 2), (2, 1)]
+    taps = tuple(
+        Tap.of(row, column, BitSelect(bits), rng.permutation(np.arange(1 << len(bits)) % 2 == 0))
+        for bits, (row, column) in zip(names, places, strict=True)
+    )
+    model = WisardModel(
+        Neighbourhood(3, taps),
+        tuple(f"class {i}" for i in range(classes)),
+        np.array([[[0, 1, 2], [2, 3, 4], [4, 0, 1]]]),
+        rng.integers(0, 3, (classes, 3, 8)),
+        bleaching=1,
+    )
+    return NeighbourhoodSpecification(model, rng.random(32) < care)
+
+
+def emitted_neighbourhood(specification: NeighbourhoodSpecification, *, free: bool = True) -> str:
+    """A circuit that equals the model where it is cared for, and answers ``free`` elsewhere."""
+    width = specification.class_width
+    text = f"module neighbourhood(input [215:0] window, output [{width - 1}:0] class_bits);\n"
+    text += "  wire [4:0] code;\n"
+    for i, tap in enumerate(specification.encoder.taps):
+        low = 24 * (3 * tap.row + tap.column)
+        bits = [f"window[{low + place}]" for place in tap.pixel.pixel_positions]
+        text += sum_of_products(f"code[{i}]", bits, np.flatnonzero(tap.table).tolist())
+    classes = specification.model.evaluate_all_codes()
+    for bit in range(width):
+        values = np.where(specification.care, classes >> bit & 1, free)
+        code = [f"code[{i}]" for i in range(5)]
+        text += sum_of_products(f"class_bits[{bit}]", code, np.flatnonzero(values).tolist())
+    return text + "endmodule\n"
 
 
 def sum_of_products(name: str, bits: list[str], codes: list[int]) -> str:

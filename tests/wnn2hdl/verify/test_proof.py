@@ -8,8 +8,17 @@ import pytest
 
 from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.tools import find_yosys
+from wnn2hdl.verify.compiled import run_compiled
+from wnn2hdl.verify.mutation import make_mutants
 from wnn2hdl.verify.proof import prove, prove_netlists
-from wnn2hdl.verify.specification import PART_NAMES, PartName, Specification, pixels_to_word
+from wnn2hdl.verify.specification import (
+    PART_NAMES,
+    NeighbourhoodSpecification,
+    PartName,
+    Specification,
+    pixels_to_word,
+)
+from wnn2hdl.verify.vectors import stimulus
 
 
 def written(folder: Path, text: str, name: str = "circuit.v") -> Path:
@@ -80,6 +89,52 @@ def test_a_wrong_edge_bit_is_found_on_cared_for_windows_only(circuits: ModuleTyp
         assert proof.status == status
         if proof.counterexample is not None:
             assert proof.counterexample.inputs["bits"].tolist() == [window]
+
+
+@pytest.mark.parametrize(("classes", "care"), [(2, 1.0), (3, 1.0), (2, 0.5), (3, 0.5)])
+def test_a_neighbourhood_that_equals_the_model_is_proved(
+    circuits: ModuleType, tmp_path: Path, classes: int, care: float
+) -> None:
+    specification = circuits.random_neighbourhood(1, classes=classes, care=care)
+    path = written(tmp_path, circuits.emitted_neighbourhood(specification))
+    assert prove(specification, {"neighbourhood": path})["neighbourhood"].status == "proved"
+    if care < 1.0:
+        exact = NeighbourhoodSpecification(specification.model, np.ones(32, dtype=np.bool_))
+        assert prove(exact, {"neighbourhood": path})["neighbourhood"].status == "refuted"
+
+
+def test_a_neighbourhood_that_reads_a_wrong_pixel_is_found(circuits: ModuleType, tmp_path: Path) -> None:
+    specification = circuits.random_neighbourhood(2, care=0.8)
+    text = circuits.emitted_neighbourhood(specification)
+    low = 24 * (3 * 0 + 2)
+    wrong = text.replace(f"window[{low + 23}]", f"window[{low + 24 + 23}]")
+    assert wrong != text
+    found = prove(specification, {"neighbourhood": written(tmp_path, wrong)})["neighbourhood"].counterexample
+    assert found is not None
+    assert found.actual != found.expected
+    assert specification.care[specification.codes(found.inputs["window"])].all()
+
+
+@pytest.mark.simulator
+def test_mutants_of_a_neighbourhood_that_differ_are_found(circuits: ModuleType, tmp_path: Path) -> None:
+    specification = circuits.random_neighbourhood(3)
+    text = circuits.emitted_neighbourhood(specification)
+    windows = stimulus(specification, "neighbourhood")
+    inputs = {"window": windows["window"]}
+    expected = specification.evaluate("neighbourhood", inputs)["class_bits"]
+    mutants = make_mutants(text, 8, seed=0)
+    part = specification.part("neighbourhood")
+    refuted = 0
+    for mutant in mutants:
+        path = written(tmp_path, mutant.verilog)
+        status = prove(specification, {"neighbourhood": path})["neighbourhood"].status
+        answers, _ = run_compiled(part, [path], inputs, "icarus")
+        if (answers["class_bits"] != expected).any():
+            assert status == "refuted", mutant.fault
+            refuted += 1
+        else:
+            assert status == "proved", mutant.fault
+    assert refuted > 0
 
 
 def test_a_matcher_that_miscounts_is_found(circuits: ModuleType, tmp_path: Path) -> None:

@@ -7,7 +7,12 @@ import pytest
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, WisardModel
-from wnn2hdl.verify.specification import Specification, pixels_to_word, word_to_pixels
+from wnn2hdl.verify.specification import (
+    NeighbourhoodSpecification,
+    Specification,
+    pixels_to_word,
+    word_to_pixels,
+)
 
 
 def test_a_window_port_holds_pixel_0_in_its_low_bits_and_red_in_each_pixels_high_byte() -> None:
@@ -55,3 +60,25 @@ def test_a_model_of_features_is_no_pixel_model(circuits: ModuleType) -> None:
     model = WisardModel(Thermometer(((0.5,),)), ("a", "b"), mapping, counts, 1)
     with pytest.raises(InputError, match="selects pixel bits: thermometer"):
         Specification.exact(model, circuits.random_specification(0).edge_filter)
+
+
+def test_a_neighbourhood_is_its_model_on_every_window(circuits: ModuleType) -> None:
+    specification = circuits.random_neighbourhood(5, classes=3)
+    windows = np.random.default_rng(0).integers(0, 256, (200, 9, 3), dtype=np.uint8)
+    answers = specification.evaluate("neighbourhood", {"window": windows})["class_bits"]
+    codes = [int(specification.encoder.codes(window.reshape(3, 3, 3))[0, 0]) for window in windows]
+    assert answers.tolist() == specification.model.evaluate_all_codes()[codes].tolist()
+    assert specification.part("neighbourhood").inputs == {"window": 216}
+    assert specification.part("neighbourhood").outputs == {"class_bits": 2}
+
+
+def test_a_neighbourhood_needs_a_model_of_one_and_something_to_prove(circuits: ModuleType) -> None:
+    neighbourhood, pixel = circuits.random_neighbourhood(5), circuits.random_specification(0)
+    with pytest.raises(InputError, match="does not look at neighbours"):
+        NeighbourhoodSpecification(pixel.model, pixel.pixel_care)
+    with pytest.raises(InputError, match="nothing to prove"):
+        NeighbourhoodSpecification(neighbourhood.model, np.zeros(32, dtype=np.bool_))
+    with pytest.raises(ValueError, match="does not fit the model"):
+        NeighbourhoodSpecification(neighbourhood.model, np.ones(16, dtype=np.bool_))
+    with pytest.raises(InputError, match="selects pixel bits"):
+        Specification.exact(neighbourhood.model, pixel.edge_filter)

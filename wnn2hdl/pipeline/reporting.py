@@ -1,0 +1,182 @@
+"""The HTML page of a build, made of what lies in its folder."""
+
+import os
+import shlex
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.dataset import Dataset
+from wnn2hdl.errors import InputError
+from wnn2hdl.images import Palette, png_bytes, read_rgb
+from wnn2hdl.ir import WisardModel, window_codes
+from wnn2hdl.ir.files import read_json, write_text
+from wnn2hdl.pipeline.classifiers import circuit_classifier
+from wnn2hdl.pipeline.design import MODEL_FILE, Design
+from wnn2hdl.pipeline.evaluation import with_halo
+from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, REPORT_HTML, SAMPLE_FILE, require_build
+from wnn2hdl.pipeline.planning import CompileOptions
+from wnn2hdl.report import Entry, ModelFigures, Picture, build_page, check_report, percent
+from wnn2hdl.samples import landscape
+
+SAMPLE_SIDE = 256
+"""Pixels of the sample picture's sides at most: enough to see the edges of, small enough for a page."""
+
+SAMPLE_SEED = 1000
+
+_FLAGS = {"care_minimum": "--care-min", "style": "--emit"}
+_NO_FLAG = frozenset({"sobel_threshold"})
+
+
+def sample_picture(test_set: Dataset | None) -> NDArray[np.uint8]:
+    """The middle of the first whole test image; without one, a generated landscape.
+
+    Returns:
+        uint8 ``[height, width, 3]``, at most `SAMPLE_SIDE` high and wide.
+    """
+    image = next(iter(test_set), None) if test_set is not None else None
+    if image is None or image.shape is None:
+        return landscape(SAMPLE_SIDE, SAMPLE_SIDE, SAMPLE_SEED).image
+    top, left = (max(0, size - SAMPLE_SIDE) // 2 for size in image.shape)
+    return np.ascontiguousarray(image.picture[top : top + SAMPLE_SIDE, left : left + SAMPLE_SIDE])
+
+
+def page(design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8]) -> str:
+    """The page of a build.
+
+    Args:
+        design: the build's.
+        report: the object of its `report.json`.
+        sample: a picture to show through the circuit, uint8 ``[height, width, 3]``.
+    """
+    palette = Palette.of(design.model.classes)
+    colours = palette.to_json()
+    pictures = _pictures(design, report, sample, palette)
+    return build_page(report, design.networks, pictures, tuple(colours.items()) if pictures else ())
+
+
+def write_page(folder: Path) -> Path:
+    """Write the page of a build into its folder, made of the files there.
+
+    Raises:
+        ModelFileError: one of these is missing or damaged.
+        InputError: the page cannot be written.
+    """
+    report = read_report(folder)
+    sample = folder / SAMPLE_FILE
+    picture = read_rgb(sample) if sample.is_file() else sample_picture(None)
+    write_text(folder / REPORT_HTML, page(Design.load(folder), report, picture))
+    return folder / REPORT_HTML
+
+
+def read_report(folder: Path) -> dict[str, Any]:
+    """The report of a build; raises ModelFileError if it is missing, damaged or of another wnn2hdl.
+
+    A build that is marked as failed is not proved, whatever the report says.
+    """
+    path = folder / REPORT_FILE
+    report = read_json(path, "a report")
+    check_report(report, path)
+    if (folder / FAILED).exists():
+        report["proof"]["status"] = "failed"
+    return report
+
+
+def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
+    """Builds for an index, each with a page; a page that is missing is written.
+
+    Args:
+        folders: the builds; those of the same name are told apart by their paths.
+        index: the file of the index, which links to their pages.
+
+    Raises:
+        InputError: one is no build, or is given twice.
+        ModelFileError: a file of one is missing or damaged.
+    """
+    names = Counter(_name(folder) for folder in folders)
+    entries = []
+    for folder in folders:
+        require_build(folder)
+        report = read_report(folder)
+        if not (folder / REPORT_HTML).is_file():
+            write_page(folder)
+        name = _name(folder) if names[_name(folder)] == 1 else str(folder)
+        link = os.path.relpath((folder / REPORT_HTML).resolve(), index.resolve().parent)
+        entries.append(Entry(name, quote(Path(link).as_posix()), report, Design.load(folder).networks))
+    twice = [name for name, count in Counter(entry.name for entry in entries).items() if count > 1]
+    if twice:
+        raise InputError("a build is given twice", value=twice[0], mend="name it once")
+    return tuple(entries)
+
+
+def _name(folder: Path) -> str:
+    return folder.resolve().name
+
+
+def model_figures(model: WisardModel) -> ModelFigures:
+    """What a report tells of a model."""
+    return ModelFigures(
+        classes=model.classes,
+        address_bits=model.address_bits,
+        rams=model.rams,
+        bits=model.encoder.names,
+        bleaching=model.bleaching,
+        saturation=tuple(tuple(row) for row in model.saturation.tolist()),
+        training=model.training,
+    )
+
+
+def command(name: str, options: CompileOptions) -> str:
+    """The command that compiles a build's model again, as a shell takes it, without options of no effect.
+
+    Args:
+        name: of the build folder, whose model is compiled and beside which the new build is put.
+        options: what it was compiled with.
+    """
+    words = ["wnn2hdl", "compile", f"{name}/{MODEL_FILE}", "-o", f"{name}-again"]
+    usual = asdict(CompileOptions())
+    for option, value in asdict(options).items():
+        if value != usual[option] and option not in _NO_FLAG:
+            words += [_FLAGS.get(option, f"--{option.replace('_', '-')}"), str(value)]
+    return shlex.join(words)
+
+
+def _pictures(
+    design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8], palette: Palette
+) -> tuple[Picture, ...]:
+    if report["target"] == "match":
+        return ()
+    classifier = circuit_classifier(design)
+    labels = classifier.classify(with_halo(sample, classifier.halo))
+    # Outside of its care set a circuit of several outputs may name a class that does not exist.
+    labels = np.minimum(labels, np.uint8(len(palette.names) - 1))
+    found = [
+        _picture("Input", "A picture, as it goes in", sample),
+        _picture(
+            "Class of each pixel",
+            _shares(labels, palette.names),
+            palette.paint(labels),
+        ),
+    ]
+    if report["parts"]["edge"]["luts"] is not None and min(labels.shape) >= 3:
+        edges = design.networks["edge"].evaluate(window_codes(labels != 0))[..., 0]
+        # With a white rim, since pixels there have no whole window, so that all pictures lie alike.
+        drawn = np.pad(np.where(edges, np.uint8(0), np.uint8(255)), 1, constant_values=255)
+        told = f"{percent(float(edges.mean()))} of the windows are an edge, drawn in black"
+        found.append(_picture("Edges", told, drawn))
+    return tuple(found)
+
+
+def _picture(title: str, description: str, array: NDArray[np.uint8]) -> Picture:
+    return Picture(title, description, png_bytes(array), array.shape[1], array.shape[0])
+
+
+def _shares(labels: NDArray[np.uint8], names: tuple[str, ...]) -> str:
+    shares = np.bincount(labels.ravel(), minlength=len(names)) / labels.size
+    return ", ".join(f"{percent(float(share))} {name}" for name, share in zip(names, shares, strict=True))
