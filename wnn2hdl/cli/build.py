@@ -19,7 +19,11 @@ from wnn2hdl.pipeline.planning import CompileOptions
 @app.command("compile")
 @click.argument("model", type=file)
 @click.option("-o", "output", type=folder, required=True, help="The build folder to write, as in build/NAME.")
-@click.option("--target", type=click.Choice(get_args(Target)), default="block", show_default=True)
+@click.option(
+    "--target",
+    type=click.Choice(get_args(Target)),
+    help="Top of the Verilog.  [default: neighbourhood for models that look at neighbours, else block]",
+)
 @click.option(
     "--mode",
     type=click.Choice(get_args(Mode)),

@@ -60,7 +60,7 @@ def verify_command(build: Path, as_json: bool) -> None:
 def simulate_command(
     build: Path, image: Path, simulator: SimulatorName, vcd: Path | None, output: Path | None, as_json: bool
 ) -> None:
-    """Run the block of BUILD over every 3x3 window of a picture and compare each output bit.
+    """Run the circuit of BUILD over every window of a picture and compare each output bit.
 
     \b
     Examples:
@@ -72,7 +72,9 @@ def simulate_command(
         result = play(build, image, simulator, report, vcd)
     output = output or build / "simulation"
     make_folder(output)
-    pictures = {"class": result.foreground, "edge": result.edges}
+    pictures, places = {"class": result.foreground}, "windows"
+    if result.edges is not None:
+        pictures["edge"], places = result.edges, "pixels"
     for name, flags in pictures.items():
         write_png(output / f"{image.stem}-{name}.png", flags)
     rate = result.windows / result.seconds
@@ -89,7 +91,7 @@ def simulate_command(
     }
     text = (
         f"{image}: {result.windows:,} windows in {result.seconds:.1f} s ({rate:,.0f} a second), all bits "
-        f"as they should be; {result.cared:.2%} of the pixels have a code that the circuit is proved on\n"
+        f"as they should be; {result.cared:.2%} of the {places} have a code that the circuit is proved on\n"
         f"pictures in {output}"
     )
     emit(data, text, as_json=as_json)

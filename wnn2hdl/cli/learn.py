@@ -1,10 +1,12 @@
-"""`train` and `evaluate`: models from labelled images, and how good they are on others."""
+"""`train`: models from labelled images."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
+from numpy.typing import NDArray
 
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
@@ -24,9 +26,8 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.files import make_folder
 from wnn2hdl.pipeline.budget import Point, measure, pareto_front, train_under_budget
-from wnn2hdl.pipeline.evaluation import circuit_answers, evaluate
-from wnn2hdl.pipeline.training import Progress, pixel_encoder, train
-from wnn2hdl.pipeline.verification import open_build
+from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
+from wnn2hdl.pipeline.training import Progress, train, with_colours
 from wnn2hdl.report.plots import plot_pareto
 
 
@@ -80,6 +81,11 @@ class Discriminators:
     "--max-luts", type=click.IntRange(min=1), help="The most accurate classifier of so many LUTs a pixel."
 )
 @click.option(
+    "--neighbourhood",
+    type=click.Choice(["3", "5"]),
+    help="Look at the 3x3 or 5x5 pixels around: six tables of two LUTs and a LUT over them.",
+)
+@click.option(
     "--pareto", is_flag=True, help="The front of accuracy against LUTs, a model each, and its plot."
 )
 @click.option(
@@ -99,6 +105,7 @@ def train_command(
     regions: Path | None,
     chips: Path | None,
     max_luts: int | None,
+    neighbourhood: str | None,
     pareto: bool,
     trials: int,
     seed: int,
@@ -106,7 +113,15 @@ def train_command(
     as_json: bool,
     **discriminators: Any,
 ) -> None:
-    """Train a pixel classifier on labelled images; on embedded landscapes if none are given."""
+    """Train a pixel classifier on labelled images; on embedded landscapes if none are given.
+
+    \b
+    Examples:
+      wnn2hdl train --images IMAGES --masks MASKS -o model.json
+      wnn2hdl train --regions regions.csv --chips CHIPS --address-bits 4 --rams 16 -o model.json
+      wnn2hdl train --images IMAGES --masks MASKS --max-luts 2 -o model.json
+      wnn2hdl train --images IMAGES --masks MASKS --neighbourhood 3 -o model.json
+    """
     dataset = labelled(images, masks, regions=regions, chips=chips, palette=palette, seed=seed)
     options = Discriminators(**discriminators)
     # Before the training, so that a place that cannot be written is told at once.
@@ -115,55 +130,26 @@ def train_command(
     with progress() as report:
         if pareto:
             options.require_none("--pareto")
+            if neighbourhood is not None:
+                raise InputError("--pareto compares pixel classifiers", mend="leave --neighbourhood out")
             points = measure(dataset, trials=trials, seed=seed, progress=report, max_luts=max_luts)
             model = max(pareto_front(points), key=lambda point: point.accuracy).model
+        elif neighbourhood is not None:
+            options.require_none("--neighbourhood")
+            model = train_neighbourhood(
+                dataset, int(neighbourhood), max_luts=max_luts, seed=seed, progress=report
+            )
         elif max_luts is not None:
             options.require_none("--max-luts")
             model = train_under_budget(dataset, max_luts, trials=trials, seed=seed, progress=report)
         else:
             model = options.train(dataset, seed, report)
+        model = with_colours(model, dataset, report)
     model.save(output)
     summary = _summary(model, output, len(dataset))
     if pareto:
-        summary["front"] = _save_front(points, output)
+        summary["front"] = _save_front(points, output, model.colours)
     emit(summary, _sentence(summary), as_json=as_json)
-
-
-@app.command("evaluate")
-@click.argument("model", type=click.Path(exists=True, path_type=Path))
-@images_option
-@masks_option
-@palette_option
-@seed_option
-@json_option
-def evaluate_command(
-    model: Path,
-    images: Path | None,
-    masks: Path | None,
-    palette: Path | None,
-    seed: int,
-    as_json: bool,
-) -> None:
-    """Measure MODEL, a model file or a build folder (then its circuit), on labelled images."""
-    if model.is_dir():
-        design, _, _ = open_build(model)
-        trained, answers = design.model, circuit_answers(design.pixel)
-    else:
-        trained = WisardModel.load(model)
-        answers = trained.evaluate_all_codes()
-    dataset = labelled(images, masks, palette=palette, seed=seed)
-    with progress() as report:
-        result = evaluate(answers, pixel_encoder(trained), dataset, report)
-    data = {
-        "model": str(model),
-        "accuracy": result.accuracy,
-        "images": len(dataset),
-        "accuracies": result.accuracies,
-        "classes": list(dataset.classes),
-        "confusion": result.confusion.sum(axis=0).tolist(),
-    }
-    text = f"{model}: {result.accuracy:.2%} of the pixels of {len(dataset)} images are right"
-    emit(data, text, as_json=as_json)
 
 
 def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
@@ -173,7 +159,7 @@ def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
         "classes": list(model.classes),
         "address_bits": model.address_bits,
         "rams": model.rams,
-        "bits": list(pixel_encoder(model).bits),
+        "bits": list(model.encoder.names),
         "bleaching": model.bleaching,
         "images": images,
         "saturation": {"mean": float(saturation.mean()), "highest": float(saturation.max())},
@@ -197,13 +183,15 @@ def _sentence(summary: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _save_front(points: tuple[Point, ...], output: Path) -> list[dict[str, Any]]:
+def _save_front(
+    points: tuple[Point, ...], output: Path, colours: NDArray[np.int64] | None
+) -> list[dict[str, Any]]:
     """Write a model for each point of the front, and the plot, beside the best model."""
     front = pareto_front(points)
     rows = []
     for point in front:
         path = output.with_name(f"{output.stem}-{point.luts}luts.json")
-        point.model.save(path)
+        replace(point.model, colours=colours).save(path)
         rows.append(
             {"luts": point.luts, "accuracy": point.accuracy, "method": point.method, "model": str(path)}
         )

@@ -1,6 +1,7 @@
 """`sweep`: thousands of architectures trained and costed, and any of their models rebuilt."""
 
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,24 +19,23 @@ from wnn2hdl.cli.options import (
 )
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.encode import high_bits, parse_bits
-from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.errors import InputError
 from wnn2hdl.sweep import (
     TRAINING_PIXELS,
     Outcome,
     PixelSets,
     Recipe,
     Trial,
-    circuits,
     draw,
-    draw_all,
     find_trial,
     grid,
+    present,
     rebuild,
     run_distributed,
     run_locally,
     run_sweep,
     run_trial,
-    write_page,
+    seen_colours,
 )
 
 DEFAULT_FOLDER = Path("build/sweep")
@@ -170,7 +170,7 @@ def sweep_command(
         trial = find_trial(plan, where, outcome.decision.chosen.best.name)
         _write_model(sets, trial, model_file, as_json=as_json)
         return
-    _show(outcome, sets, where)
+    present(outcome, sets, where)
     emit(
         outcome.to_json() | {"folder": str(where), "seconds": seconds},
         _summary(outcome, where),
@@ -199,25 +199,12 @@ def _write_model(sets: PixelSets, trial: Trial, path: Path, *, as_json: bool) ->
         raise InputError(
             "the trial failed", value=f"{trial.name} ({record.error})", mend="choose another one"
         )
-    rebuild(sets, trial).save(path)
+    replace(rebuild(sets, trial), colours=seen_colours(sets)).save(path)
     text = (
         f"{path}: trial {trial.name}, accuracy {record.accuracy:.4f} on the held-out images, "
         f"{record.luts} LUTs a pixel, bleaching threshold {record.bleaching}, {record.status}"
     )
     emit(record.to_json() | {"model": str(path)}, text, as_json=as_json)
-
-
-def _show(outcome: Outcome, sets: PixelSets, where: Path) -> None:
-    clouds = [("grid", circuits(outcome.plan, where, search=False), outcome.front)]
-    if outcome.searched:
-        clouds.append(("NSGA-II", circuits(outcome.plan, where, search=True), outcome.search_front))
-    entered = outcome.decision.finalists if outcome.decision else ()
-    try:
-        drawn = draw_all(where, outcome.surface, [x.cell for x in entered], entered, clouds)
-        write_page(outcome, sets, drawn, where)
-    except ExtraMissingError as error:
-        # The tables are complete without them.
-        click.echo(f"wnn2hdl: {error.line()}", err=True)
 
 
 def _summary(outcome: Outcome, where: Path) -> str:

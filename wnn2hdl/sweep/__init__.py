@@ -3,10 +3,9 @@
 from wnn2hdl.sweep.distributed import run_distributed
 from wnn2hdl.sweep.grid import Plan, Recipe, Trial, grid
 from wnn2hdl.sweep.local import run_locally
-from wnn2hdl.sweep.page import write_page
-from wnn2hdl.sweep.pictures import draw_all
-from wnn2hdl.sweep.pixels import TRAINING_PIXELS, PixelSets, draw
-from wnn2hdl.sweep.study import Outcome, circuits, find_trial, run_sweep
+from wnn2hdl.sweep.page import present
+from wnn2hdl.sweep.pixels import TRAINING_PIXELS, PixelSets, draw, seen_colours
+from wnn2hdl.sweep.study import Outcome, find_trial, run_sweep
 from wnn2hdl.sweep.trial import Record, answers_digest, rebuild, run_trial
 
 __all__ = [
@@ -18,15 +17,14 @@ __all__ = [
     "Record",
     "Trial",
     "answers_digest",
-    "circuits",
     "draw",
-    "draw_all",
     "find_trial",
     "grid",
+    "present",
     "rebuild",
     "run_distributed",
     "run_locally",
     "run_sweep",
     "run_trial",
-    "write_page",
+    "seen_colours",
 ]

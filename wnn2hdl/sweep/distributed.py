@@ -15,24 +15,14 @@ What a sweep of 10**6 trials on 100 workers costs, on paper, with trials of 50 m
 """
 
 from collections.abc import Iterable, Iterator
-from itertools import islice
-from typing import TYPE_CHECKING
 
-from wnn2hdl.errors import ExtraMissingError, ToolError
+from wnn2hdl.pipeline.cluster import run_on_cluster
 from wnn2hdl.sweep.grid import Trial, batches
 from wnn2hdl.sweep.pixels import PixelSets
 from wnn2hdl.sweep.trial import Record, failed, run_trials
 
-if TYPE_CHECKING:
-    from distributed import Client, Future
-
 BATCH = 100
 """Trials a task."""
-
-AHEAD = 4
-"""Tasks handed out for each core of the cluster: enough that none waits for the client."""
-
-_CONNECT_SECONDS = 30
 
 
 def run_distributed(
@@ -40,9 +30,8 @@ def run_distributed(
 ) -> Iterator[list[Record]]:
     """Run trials on a Dask cluster whose workers have this package installed.
 
-    A worker that dies loses nothing: its tasks, and the pixel sets if it held their only copy, are made
-    again elsewhere. The trials of a task that keeps killing workers are run again one by one when all others
-    are done, and one that still does so is recorded as failed.
+    The trials of a task that keeps killing workers are run again one by one, and one that still does so is
+    recorded as failed.
 
     Args:
         scheduler: its address: ``tcp://host:8786``.
@@ -57,63 +46,16 @@ def run_distributed(
         ExtraMissingError: Dask is not installed.
         ToolError: no scheduler answers, it has no workers, or one of them cannot run trials at all.
     """
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise ExtraMissingError(
-            "running on a cluster needs Dask", mend="install it with: pip install 'wnn2hdl[cluster]'"
-        ) from error
-    try:
-        client = Client(scheduler, timeout=_CONNECT_SECONDS)
-    except (OSError, ValueError) as error:
-        raise ToolError(
-            "no Dask scheduler answers", value=scheduler, mend="start `dask scheduler` or correct the address"
-        ) from error
-    with client:
-        cores = sum(client.nthreads().values())
-        if not cores:
-            raise ToolError("the cluster has no workers", value=scheduler, mend="start `dask worker`s")
-        yield from _run(client, cores, sets, batches(trials, batch))
-
-
-def _run(
-    client: "Client", cores: int, sets: PixelSets, waiting: Iterator[tuple[Trial, ...]]
-) -> Iterator[list[Record]]:
-    from distributed import KilledWorker, as_completed
-
-    # The sets are the result of a task, not scattered data: those are lost with the last worker that has
-    # them, while the scheduler can have a task done again.
-    shared = client.submit(_identity, sets, key=f"pixel-sets-{sets.digest}")
-    running: dict[Future[list[Record]], tuple[Trial, ...]] = {}
-    suspects: list[Trial] = []
-    completed = as_completed()
-
-    def submit(batch: tuple[Trial, ...]) -> None:
-        future = client.submit(run_trials, shared, batch, pure=False)
-        running[future] = batch
-        completed.add(future)
-
-    for batch in islice(waiting, AHEAD * cores):
-        submit(batch)
-    for future in completed:
-        batch = running.pop(future)
-        try:
-            yield future.result()
-        except KilledWorker:
-            suspects += batch
-        except Exception as error:
-            raise ToolError(
-                "a worker cannot run trials", value=error, mend="install the same wnn2hdl on every worker"
-            ) from error
-        for following in islice(waiting, 1):
-            submit(following)
-    # A dying worker takes along what is queued on it, so guilt shows only when a trial runs all alone.
-    for trial in suspects:
-        try:
-            yield client.submit(run_trials, shared, (trial,), pure=False).result()
-        except KilledWorker:
+    done = run_on_cluster(
+        scheduler, run_trials, sets, batches(trials, batch), alone=_single, install="wnn2hdl"
+    )
+    for trials_done, records in done:
+        if records is None:
+            (trial,) = trials_done
             yield [failed(trial, RuntimeError("every worker that ran this trial died"))]
+        else:
+            yield records
 
 
-def _identity(sets: PixelSets) -> PixelSets:
-    return sets
+def _single(batch: tuple[Trial, ...]) -> Iterator[tuple[Trial, ...]]:
+    return ((trial,) for trial in batch)

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
-from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.ir.files import write_text
+from wnn2hdl.sweep.pictures import draw_all
 from wnn2hdl.sweep.pixels import PixelSets
-from wnn2hdl.sweep.study import Outcome
+from wnn2hdl.sweep.study import Outcome, circuits
 
 PAGE_FILE = "index.html"
 
@@ -21,6 +21,28 @@ _CAPTIONS = {
 }
 
 
+def present(outcome: Outcome, sets: PixelSets, folder: Path) -> Path:
+    """Draw every picture of a finished sweep and write its page.
+
+    Args:
+        outcome: what was found.
+        sets: what it was found on.
+        folder: the sweep's.
+
+    Returns:
+        the page.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    clouds = [("grid", circuits(outcome.plan, folder, search=False), outcome.front)]
+    if outcome.searched:
+        clouds.append(("NSGA-II", circuits(outcome.plan, folder, search=True), outcome.search_front))
+    entered = outcome.decision.finalists if outcome.decision else ()
+    drawn = draw_all(folder, outcome.surface, [x.cell for x in entered], entered, clouds)
+    return write_page(outcome, sets, drawn, folder)
+
+
 def write_page(outcome: Outcome, sets: PixelSets, pictures: Sequence[str], folder: Path) -> Path:
     """Write `PAGE_FILE` into the folder of a sweep.
 
@@ -31,15 +53,11 @@ def write_page(outcome: Outcome, sets: PixelSets, pictures: Sequence[str], folde
         folder: the sweep's.
 
     Raises:
-        ExtraMissingError: Jinja2 is not installed.
         InputError: the folder cannot be written.
     """
-    try:
-        from jinja2 import Environment, StrictUndefined
-    except ImportError as error:
-        raise ExtraMissingError(
-            "the page needs Jinja2", mend="install it with: pip install 'wnn2hdl[plot]'"
-        ) from error
+    # Not at the top: commands that write no page need not wait for it.
+    from jinja2 import Environment, StrictUndefined
+
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(files(__package__).joinpath("page.html").read_text(encoding="utf-8"))
     recipe = outcome.plan.recipe

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.ir.files import write_bytes
 from wnn2hdl.sweep.grid import Cell
 from wnn2hdl.sweep.selection import Finalist, Surface, label
@@ -46,16 +45,12 @@ def draw_all(
         The pictures' names without their suffixes.
 
     Raises:
-        ExtraMissingError: Matplotlib is not installed.
         InputError: the folder cannot be written.
     """
-    try:
-        from matplotlib import rc_context
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ExtraMissingError(
-            "pictures need Matplotlib", mend="install it with: pip install 'wnn2hdl[plot]'"
-        ) from error
+    # Not at the top: commands that draw nothing need not wait for it.
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
     drawings: dict[str, Callable[[Figure], None]] = {}
     if min(surface.accuracy.shape) > 1 and np.isfinite(surface.accuracy).any():
         drawings["surface"] = lambda figure: _surface(figure, surface)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.dataset import ColourHistogram, Dataset, colour_histogram, split
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import MAX_TABLE_INPUTS, BitSelect
+from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect
 from wnn2hdl.pipeline.training import Progress
 
 TRAINING_PIXELS = 20_000
@@ -135,6 +135,11 @@ def code_counts(sets: PixelSets, bits: tuple[str, ...]) -> CodeCounts:
     codes = _codes(encoder, sets.held_out[0])
     held_out = np.stack([np.bincount(codes, row, size).astype(np.int64) for row in sets.held_out[1:]])
     return CodeCounts(encoder, training, held_out, imagery)
+
+
+def seen_colours(sets: PixelSets) -> NDArray[np.int64]:
+    """What `WisardModel.colours` holds of a model that was trained on these images."""
+    return np.flatnonzero(code_counts(sets, COLOURS.bits).imagery)
 
 
 def _codes(encoder: BitSelect, colours: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -73,7 +73,7 @@ def test_more_classes_by_a_palette(folders: tuple[Path, Path], tmp_path: Path) -
         "--address-bits", 2, "--rams", 1, "--json", "-o", model,
     )  # fmt: skip
     assert json.loads(done.stdout)["classes"] == ["forest", "burnt", "water"]
-    assert "more classes" in complaint("evaluate", model, "--images", images, "--masks", masks)
+    assert "different classes" in complaint("evaluate", model, "--images", images, "--masks", masks)
 
 
 def test_garbage_gets_one_line(folders: tuple[Path, Path], tmp_path: Path) -> None:
@@ -112,6 +112,14 @@ def test_a_model_that_is_none_and_a_folder_that_cannot_be_written(tmp_path: Path
 def test_bad_usage_has_status_2() -> None:
     assert "No such option" in complaint("train", "--colour", "blue")
     assert "neither 'auto' nor a whole number" in complaint("train", "--bleach", "0", "-o", "m.json")
+    assert "'4' is not one of" in complaint("train", "--neighbourhood", "4", "-o", "m.json")
+
+
+def test_options_that_a_neighbourhood_has_no_use_for_are_refused(tmp_path: Path) -> None:
+    train = ("train", "--neighbourhood", "3", "-o", tmp_path / "m.json")
+    assert "--neighbourhood chooses the classifier itself: --rams" in complaint(*train, "--rams", "4")
+    assert "leave --neighbourhood out" in complaint(*train, "--pareto")
+    assert "takes 13 LUTs: 4 allowed" in complaint(*train, "--max-luts", "4")
 
 
 @pytest.mark.slow

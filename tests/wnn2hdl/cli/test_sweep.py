@@ -6,7 +6,6 @@ import pytest
 
 from wnn2hdl.cli import main, sweep  # noqa: F401  # importing the module registers its command
 from wnn2hdl.dataset import from_samples
-from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.sweep import PixelSets, answers_digest, draw
 from wnn2hdl.sweep import run_sweep as real_sweep
@@ -57,26 +56,11 @@ def test_json_tells_how_many_trials_there_were(
 def test_pictures_and_page_lie_in_the_folder(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pytest.importorskip("matplotlib")
-    pytest.importorskip("jinja2")
     status, out, _ = run(monkeypatch, capsys, *GRID)
     assert status == 0
     assert out.startswith("build/sweep: 8 trials")
     names = {path.name for path in Path("build/sweep").iterdir()}
     assert {"index.html", "surface.svg", "surface.png", "pareto.svg", "finalists.png"} <= names
-
-
-def test_without_the_extra_the_tables_are_complete_and_a_line_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def missing(*_: object) -> None:
-        raise ExtraMissingError("pictures need Matplotlib", mend="install it")
-
-    monkeypatch.setattr("wnn2hdl.cli.sweep.draw_all", missing)
-    status, out, err = run(monkeypatch, capsys, *GRID, "--json")
-    assert status == 0
-    assert json.loads(out)["trials"] == 8
-    assert "wnn2hdl: pictures need Matplotlib; install it" in err
 
 
 def test_best_writes_the_model_of_the_best_trial_of_the_chosen_architecture(

@@ -89,7 +89,7 @@ def test_a_trial_that_kills_its_worker_is_recorded_and_does_not_stop_the_others(
 def test_an_address_where_nothing_listens_is_one_line(
     sets: PixelSets, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wnn2hdl.sweep.distributed._CONNECT_SECONDS", 1)
+    monkeypatch.setattr("wnn2hdl.pipeline.cluster._CONNECT_SECONDS", 1)
     with pytest.raises(ToolError, match=r"no Dask scheduler answers: tcp://127.0.0.1:9;"):
         next(run_distributed("tcp://127.0.0.1:9", sets, trials(plan)))
 

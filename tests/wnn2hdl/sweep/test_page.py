@@ -2,15 +2,11 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
-import pytest
-
 from wnn2hdl.sweep.grid import Plan, grid
 from wnn2hdl.sweep.page import write_page
 from wnn2hdl.sweep.pixels import PixelSets
 from wnn2hdl.sweep.study import run_sweep
 from wnn2hdl.sweep.trial import run_trials
-
-pytest.importorskip("jinja2")
 
 
 class Outline(HTMLParser):

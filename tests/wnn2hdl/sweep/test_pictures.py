@@ -1,10 +1,7 @@
-import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.sweep.grid import Recipe
 from wnn2hdl.sweep.pictures import draw_all
 from wnn2hdl.sweep.selection import Finalist, Surface
@@ -37,7 +34,6 @@ def draw(folder: Path, *, rows: int = 4, columns: int = 5) -> tuple[str, ...]:
 
 
 def test_every_picture_is_written_twice_and_is_no_empty_sheet(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
     names = draw(tmp_path / "a")
     assert names == ("surface", "contour", "cost", "finalists", "pareto")
     for name in names:
@@ -49,7 +45,6 @@ def test_every_picture_is_written_twice_and_is_no_empty_sheet(tmp_path: Path) ->
 
 
 def test_equal_results_give_equal_bytes(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
     names = draw(tmp_path / "a")
     assert draw(tmp_path / "b") == names
     for name in names:
@@ -59,16 +54,8 @@ def test_equal_results_give_equal_bytes(tmp_path: Path) -> None:
 
 
 def test_a_single_row_has_no_surface(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
     assert draw(tmp_path / "a", rows=1) == ("finalists", "pareto")
 
 
 def test_nothing_to_show_draws_nothing(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
     assert draw_all(tmp_path, surface(1, 1), [], [], [("grid", ([], []), [])]) == ()
-
-
-def test_the_extra_is_named_where_it_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ExtraMissingError, match=r"wnn2hdl\[plot\]"):
-        draw(tmp_path)

@@ -1,0 +1,246 @@
+"""`evaluate`: how good a model or a circuit is on labelled or tagged pictures."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import (
+    SAMPLE_IMAGES,
+    SAMPLE_SIDE,
+    file,
+    folder,
+    images_option,
+    labelled,
+    masks_option,
+    palette_option,
+    seed_option,
+)
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.dataset import Dataset, from_samples
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.files import read_json
+from wnn2hdl.pipeline.classifiers import PictureClassifier, open_classifier
+from wnn2hdl.pipeline.design import MODEL_FILE
+from wnn2hdl.pipeline.evaluation import Evaluation, SquareVote, evaluate, majority_labels
+from wnn2hdl.pipeline.folder import REPORT_FILE
+from wnn2hdl.pipeline.measures import (
+    CONFIDENCE,
+    METHOD,
+    accuracy,
+    class_scores,
+    defined,
+    interval,
+    kappa,
+    mean_iou,
+)
+from wnn2hdl.pipeline.tagged import RULE, evaluate_tagged
+from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
+
+MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
+
+
+@app.command("evaluate")
+@click.argument("model", type=click.Path(exists=True, path_type=Path))
+@images_option
+@masks_option
+@palette_option
+@click.option("--chips", type=folder, help="Folder of pictures tagged as a whole; needs --tags.")
+@click.option("--tags", type=file, help="CSV of the chips' tags: image_name,tags.")
+@click.option(
+    "--square", type=click.IntRange(min=1), help="Measure squares of so many pixels a side by majority, too."
+)
+@click.option(
+    "--share",
+    type=click.FloatRange(0, 1, min_open=True),
+    default=0.5,
+    show_default=True,
+    help="Share of a square's pixels that vote, drawn at random.",
+)
+@seed_option
+@json_option
+def evaluate_command(
+    model: Path,
+    images: Path | None,
+    masks: Path | None,
+    palette: Path | None,
+    chips: Path | None,
+    tags: Path | None,
+    square: int | None,
+    share: float,
+    seed: int,
+    as_json: bool,
+) -> None:
+    """Measure MODEL, a model file or a build folder (its circuit and its model).
+
+    On pictures with masks, or the embedded landscapes if none are given: accuracy, kappa, mean intersection
+    over union, and each class's precision, recall, F1 and IoU. On pictures with tags: how well the share
+    called deforested tells cleared land from forest. Intervals are bootstrapped over images. A figure that
+    is undefined (0/0) is null.
+
+    \b
+    Examples:
+      wnn2hdl evaluate model.json
+      wnn2hdl evaluate model.json --images images --masks masks
+      wnn2hdl evaluate build/mine --images images --masks masks --square 20 --json
+      wnn2hdl evaluate model.json --chips chips --tags labels.csv
+    """
+    parts = _parts(model)
+    head: dict[str, Any] = {"classifier": str(model)}
+    if model.is_dir():
+        head["mode"] = read_json(model / REPORT_FILE, "a report")["mode"]
+    with progress() as report:
+        if chips is None and tags is None:
+            first = next(iter(parts.values()))
+            dataset = _dataset(first, images, masks, palette, seed)
+            votes = None if square is None else (square, share)
+            data, text = _with_masks(parts, dataset, votes, seed, report)
+        else:
+            if chips is None or tags is None:
+                raise InputError("these options go together", value="--chips and --tags", mend="give both")
+            if images or masks or palette or square:
+                raise InputError(
+                    "chips with tags have no masks and no squares",
+                    mend="leave --images, --masks, --palette and --square out",
+                )
+            data, text = _with_tags(parts, chips, tags, seed, report)
+    bootstrap = {"method": METHOD, "confidence": CONFIDENCE, "seed": seed}
+    emit({**head, **data, "bootstrap": bootstrap}, text, as_json=as_json)
+
+
+def _parts(model: Path) -> dict[str, PictureClassifier]:
+    """What is to be measured, the most important first: of a build its circuit, then its model."""
+    if model.is_dir():
+        return {"circuit": open_classifier(model), "model": open_classifier(model / MODEL_FILE)}
+    return {"model": open_classifier(model)}
+
+
+def _dataset(
+    classifier: PictureClassifier, images: Path | None, masks: Path | None, palette: Path | None, seed: int
+) -> Dataset:
+    if not (images or masks or palette) and classifier.classes == SAMPLE_CLASSES:
+        return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed, every_kind=True)
+    return labelled(images, masks, palette=palette, seed=seed)
+
+
+def _with_masks(
+    parts: dict[str, PictureClassifier],
+    dataset: Dataset,
+    votes: tuple[int, float] | None,
+    seed: int,
+    report: Progress,
+) -> tuple[dict[str, Any], str]:
+    found: dict[str, dict[str, Any]] = {}
+    for name, classifier in parts.items():
+        result = evaluate(classifier, dataset, report)
+        found[name] = _overall(result, seed)
+        if votes is not None:
+            voter, squares = SquareVote(classifier, *votes, seed), majority_labels(dataset, votes[0])
+            found[name]["squares"] = {
+                "side": votes[0],
+                "share": votes[1],
+                **_overall(evaluate(voter, squares, report), seed),
+                "pixels": _overall(evaluate(voter, dataset, report), seed),
+            }
+        found[name]["per_image"] = {
+            image: _figures(confusion, result.classes)
+            for image, confusion in zip(result.names, result.confusion, strict=True)
+        }
+    first = next(iter(found.values()))
+    data = {
+        "accuracy": first["accuracy"],
+        "images": len(dataset),
+        "classes": list(dataset.classes),
+        **found,
+    }
+    return data, "\n".join(_lines(name, figures, len(dataset)) for name, figures in found.items())
+
+
+def _overall(result: Evaluation, seed: int) -> dict[str, Any]:
+    return {
+        **_figures(result.confusion.sum(axis=0), result.classes),
+        "coverage": result.coverage,
+        "intervals": {name: interval(result.confusion, measure, seed) for name, measure in MEASURES.items()},
+    }
+
+
+def _figures(confusion: NDArray[np.int64], classes: tuple[str, ...]) -> dict[str, Any]:
+    return {
+        **{name: defined(measure(confusion)) for name, measure in MEASURES.items()},
+        "per_class": {
+            name: asdict(scores) for name, scores in zip(classes, class_scores(confusion), strict=True)
+        },
+        "confusion": confusion.tolist(),
+    }
+
+
+def _with_tags(
+    parts: dict[str, PictureClassifier], chips: Path, tags: Path, seed: int, report: Progress
+) -> tuple[dict[str, Any], str]:
+    found: dict[str, dict[str, Any]] = {}
+    lines = []
+    for name, classifier in parts.items():
+        result = evaluate_tagged(classifier, chips, tags, seed, report)
+        cleared = sum(result.cleared.values())
+        found[name] = {
+            "auc": result.auc,
+            "interval": result.interval,
+            "chips": {
+                chip: {"cleared": result.cleared[chip], "deforested_share": share}
+                for chip, share in result.shares.items()
+            },
+        }
+        lines.append(
+            f"{name}: area under the ROC curve {_figure(result.auc)}{_span(result.interval)}, "
+            f"{cleared} chips of cleared land against {len(result.cleared) - cleared} of forest"
+        )
+    lines += [f"left out: {count} {reason}" for reason, count in result.left_out.items()]
+    data = {
+        "auc": next(iter(found.values()))["auc"],
+        "images": len(result.cleared),
+        "left_out": result.left_out,
+        "rule": RULE,
+        **found,
+    }
+    return data, "\n".join([*lines, RULE])
+
+
+def _lines(name: str, figures: dict[str, Any], images: int) -> str:
+    lines = [f"{name}, {images} images: {_sentence(figures)}"]
+    table = Table("class", "precision", "recall", "F1", "IoU")
+    for label, scores in figures["per_class"].items():
+        table.add_row(label, *(_figure(score) for score in scores.values()))
+    console = Console(width=100)
+    with console.capture() as captured:
+        console.print(table)
+    lines.append(captured.get().rstrip())
+    if "squares" in figures:
+        squares = figures["squares"]
+        lines += [
+            f"squares of {squares['side']}, {squares['share']:g} of the pixels voting:",
+            f"  against the majority of each square of the mask: {_sentence(squares)}",
+            f"  against each pixel of the mask: {_sentence(squares['pixels'])}",
+        ]
+    return "\n".join(lines)
+
+
+def _sentence(figures: dict[str, Any]) -> str:
+    names = {"accuracy": "accuracy", "kappa": "kappa", "mean_iou": "mean IoU"}
+    return ", ".join(
+        f"{text} {_figure(figures[key])}{_span(figures['intervals'][key])}" for key, text in names.items()
+    )
+
+
+def _figure(value: float | None) -> str:
+    return "n/a" if value is None else f"{value:.4f}"
+
+
+def _span(span: tuple[float, float] | None) -> str:
+    return "" if span is None else f" ({span[0]:.4f} to {span[1]:.4f})"
