@@ -1,0 +1,166 @@
+"""`scan`: maps of deforestation from imagery of any size."""
+
+import os
+from functools import partial
+from pathlib import Path
+from typing import Any, get_args
+
+import click
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import file, folder, seed_option
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.errors import InputError
+from wnn2hdl.raster import Reading
+from wnn2hdl.scan.classify import Method
+from wnn2hdl.scan.distributed import run_distributed
+from wnn2hdl.scan.local import run_locally
+from wnn2hdl.scan.options import ScanOptions, Vector
+from wnn2hdl.scan.scanning import Scanner
+
+
+class BandsType(click.ParamType[tuple[int, ...]]):
+    """``3,2,1`` or ``1``: band numbers from 1."""
+
+    name = "R,G,B"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, ...]:
+        """The numbers."""
+        if isinstance(value, tuple):
+            return value
+        numbers = str(value).split(",")
+        if len(numbers) not in (1, 3) or not all(x.strip().isdecimal() and int(x) > 0 for x in numbers):
+            self.fail(f"{value!r} is neither three band numbers, as in 3,2,1, nor one", param, ctx)
+        return tuple(map(int, numbers))
+
+
+class ScaleType(click.ParamType[tuple[float, float]]):
+    """``0:3000``: the values that become 0 and 255."""
+
+    name = "LOW:HIGH"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """The two numbers."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            low, high = map(float, str(value).split(":"))
+        except ValueError:
+            self.fail(f"{value!r} is no pair of numbers, as in 0:3000", param, ctx)
+        if not -float("inf") < low < high < float("inf"):
+            self.fail(f"{value!r} does not rise from one number to another", param, ctx)
+        return low, high
+
+
+@app.command("scan")
+@click.argument("model", type=click.Path(exists=True, path_type=Path))
+@click.argument("picture", metavar="INPUT", type=click.Path(exists=True, path_type=Path))
+@click.option("-o", "output", type=folder, required=True, help="The folder to write into.")
+@click.option(
+    "--square", type=click.IntRange(min=1), help="Let squares of this side vote.  [default: each pixel alone]"
+)
+@click.option(
+    "--share",
+    type=click.FloatRange(0, 1, min_open=True),
+    default=0.5,
+    show_default=True,
+    help="Share of a square's pixels that vote, drawn at random.",
+)
+@seed_option
+@click.option(
+    "--smooth",
+    type=click.IntRange(0, 100),
+    default=0,
+    show_default=True,
+    help="Radius in pixels of a majority filter.",
+)
+@click.option(
+    "--minimum-area", type=click.FloatRange(0, min_open=True), help="Dissolve smaller regions, in hectares."
+)
+@click.option("--minimum-pixels", type=click.IntRange(min=2), help="The same, in pixels.")
+@click.option("--bands", type=BandsType(), help="Bands of red, green, blue.  [default: what the file states]")
+@click.option("--scale", type=ScaleType(), help="Values that become 0 and 255; needed beyond 8 bits.")
+@click.option(
+    "--mask", type=file, help="A raster of INPUT's size; where it is not 0, INPUT is left out (clouds)."
+)
+@click.option("--before", type=file, help="The same area at an earlier date: maps what was cleared since.")
+@click.option(
+    "--vector",
+    type=click.Choice(get_args(Vector)),
+    default="geojson",
+    show_default=True,
+    help="Format of polygons.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Threads.  [default: one a core]")
+@click.option("--scheduler", metavar="ADDRESS", help="Run on this Dask scheduler, as in tcp://host:8786.")
+@json_option
+def scan_command(
+    model: Path,
+    picture: Path,
+    output: Path,
+    square: int | None,
+    share: float,
+    seed: int,
+    smooth: int,
+    minimum_area: float | None,
+    minimum_pixels: int | None,
+    bands: tuple[int, ...] | None,
+    scale: tuple[float, float] | None,
+    mask: Path | None,
+    before: Path | None,
+    vector: Vector,
+    jobs: int | None,
+    scheduler: str | None,
+    as_json: bool,
+) -> None:
+    """Map deforestation in INPUT, a picture, GeoTIFF or folder of them, with MODEL.
+
+    MODEL is a model file, or a build folder: then its circuit answers, bit by bit. OUTPUT gets classes.tif,
+    polygons, overlay.png, summary.json and summary.md. The same command goes on where a killed one stopped.
+
+    \b
+    Examples:
+      wnn2hdl scan model.json earth.jpg --square 20 -o build/earth
+      wnn2hdl scan build/mine sentinel.tif --bands 3,2,1 --scale 0:3000 --mask clouds.tif -o build/map
+      wnn2hdl scan model.json 2024.tif --before 2023.tif --minimum-area 1 --vector gpkg -o build/change
+    """
+    if minimum_area is not None and minimum_pixels is not None:
+        raise InputError("--minimum-area and --minimum-pixels say the same", mend="give one of them")
+    if scheduler and jobs:
+        raise InputError("--jobs is for this machine, --scheduler for others", mend="give one of them")
+    options = ScanOptions(
+        Reading(bands, scale, mask),
+        Method(square, share, seed, smooth),
+        minimum_pixels,
+        minimum_area,
+        vector,
+    )
+    cores = len(os.sched_getaffinity(0))
+    run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores)
+    with progress() as report:
+        summary = Scanner.open(model, options, run, report).scan(picture, output, before)
+    for warning in summary["warnings"]:
+        click.echo(f"wnn2hdl: warning: {warning}", err=True)
+    emit(summary | {"output": str(output)}, _text(summary, output), as_json=as_json)
+
+
+def _text(summary: dict[str, Any], output: Path) -> str:
+    lines = [_line(summary["input"], summary["deforested"], "deforested")]
+    if "change" in summary:
+        lines.append(_line(f"since {summary['before']}", summary["change"]["newly_cleared"], "newly cleared"))
+    known = summary["coverage"]["share"]
+    lines.append(
+        f"{'none' if known is None else format(known, '.2%')} of the pixels have colours the model knows; "
+        f"{summary['seconds']:.1f} s, {summary['megapixels_per_second']:.1f} megapixels a second"
+    )
+    return "\n".join([*lines, f"written to {output}"])
+
+
+def _line(what: str, figures: dict[str, Any], verb: str) -> str:
+    share = "none" if figures["share"] is None else f"{figures['share']:.2%}"
+    hectares = "" if figures["hectares"] is None else f", {figures['hectares']:,.2f} ha"
+    return f"{what}: {share} {verb}{hectares}"

@@ -1,0 +1,30 @@
+"""What is to be done with every window of a picture: small enough to be sent to another machine."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from wnn2hdl.pipeline.classifiers import PictureClassifier
+from wnn2hdl.raster import Reading
+from wnn2hdl.scan.classify import Method
+from wnn2hdl.scan.source import Source, open_source
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """The same for all windows.
+
+    Attributes:
+        path: the picture, absolute.
+        reading: how it is read.
+        classifier: what classifies it.
+        method: squares and smoothing.
+    """
+
+    path: Path
+    reading: Reading
+    classifier: PictureClassifier
+    method: Method
+
+    def open(self) -> Source:
+        """Open the picture."""
+        return open_source(self.path, self.reading)
