@@ -1,0 +1,134 @@
+"""`wnn2hdl locate`: its bad input, and a run on the embedded flight."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl.cli import locate, main  # noqa: F401  # importing the module registers its command
+from wnn2hdl.navigate import recording
+from wnn2hdl.samples.flight import make_flight, write_flight
+
+POSE = "frame,latitude_deg,longitude_deg,height_above_ground_m,yaw_deg,pitch_deg,roll_deg\n"
+
+
+def run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
+) -> tuple[int, str, str]:
+    monkeypatch.setattr(sys, "argv", ["wnn2hdl", "locate", *arguments])
+    status = main()
+    printed = capsys.readouterr()
+    return status, printed.out, printed.err
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("flight")
+    flight = make_flight(3, (400, 400), frames=5, frame_size=(90, 160), height_m=50, tilt_deg=3, spacing_m=15)
+    assert len(list(write_flight(path, flight))) == 8
+    return path
+
+
+def given(folder: Path) -> list[str]:
+    files = {"--map": "map.tif", "--frames": "frames", "--poses": "poses.csv"}
+    return [word for option, name in files.items() for word in (option, str(folder / name))]
+
+
+def test_files_are_located_and_written(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], folder: Path, tmp_path: Path
+) -> None:
+    arguments = [*given(folder), "--camera", str(folder / "camera.toml"), "--search", "map", "--json"]
+    status, printed, _ = run(monkeypatch, capsys, *arguments, "-o", str(tmp_path / "out"))
+    assert status == 0
+    data = json.loads(printed)
+    assert data["frames"] == 5
+    assert set(data["searches"]) == {"map"}
+    assert data["methods"]["perspective-weightless"]["mean_m"] < 5
+    assert data["calibration"] is None
+    assert all(Path(path).is_file() for path in data["files"])
+
+
+def test_poses_of_a_file_calibrate_and_are_not_scored(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], folder: Path, tmp_path: Path
+) -> None:
+    lines = (folder / "poses.csv").read_text().splitlines()
+    some = tmp_path / "some.csv"
+    some.write_text("\n".join([lines[0], *lines[1:4]]) + "\n")
+    arguments = [
+        *given(folder),
+        "--focal",
+        "120",
+        "--calibrate",
+        str(some),
+        "--search",
+        "window",
+        "--window",
+        "30",
+    ]
+    status, printed, _ = run(monkeypatch, capsys, *arguments, "--json", "-o", str(tmp_path / "out"))
+    assert status == 0
+    data = json.loads(printed)
+    assert data["frames"] == 2
+    assert len(data["calibration"]["frames"]) == 3
+    assert data["searches"]["window"]["furthest_m"] == pytest.approx(42.4, abs=0.1)
+
+
+def test_the_embedded_flight_needs_no_files(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr(recording, "SAMPLE_MAP", (600, 600))
+    monkeypatch.setattr(recording, "SAMPLE_FRAMES", 2)
+    status, printed, _ = run(
+        monkeypatch, capsys, "--window", "95", "--search", "window", "-o", str(tmp_path / "out")
+    )
+    assert status == 0
+    assert "134 m" in printed
+    assert "73 m" in printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fault"),
+    [
+        (["--map", "map.tif"], "these options go together: --map, --frames, --poses; give --frames, --poses"),
+        (["--focal", "750"], "the embedded flight has its own camera: --focal"),
+        (["--calibrate", "some.csv"], "the embedded flight has no file of poses"),
+        (["--calibrate", "2"], "too few to calibrate on"),
+        (["--calibrate", "all"], "neither a count nor a CSV"),
+        (["--calibrate", "9"], "too few frames are left to score: 9 of 10 calibrate"),
+        (["--window", "0"], "--window"),
+        (["--search", "around"], "--search"),
+    ],
+)
+def test_bad_usage_is_one_line_and_status_2(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    arguments: list[str],
+    fault: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, printed, told = run(monkeypatch, capsys, *arguments)
+    assert status == 2
+    assert printed == ""
+    assert fault in told.splitlines()[-1]
+
+
+def test_bad_files_are_one_line_and_status_2(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], folder: Path, tmp_path: Path
+) -> None:
+    def refused(arguments: list[str], fault: str) -> None:
+        status, printed, told = run(monkeypatch, capsys, *arguments, "-o", str(tmp_path / "out"))
+        assert (status, printed) == (2, "")
+        assert fault in told.splitlines()[-1]
+
+    files = given(folder)
+    refused(files, "nothing is known of the camera")
+    refused([*files, "--focal", "120", "--camera", "c.toml"], "both tell the focal length")
+    refused([*files, "--camera", str(tmp_path / "none.toml")], "cannot read the camera")
+    bad = tmp_path / "poses.csv"
+    bad.write_text(POSE + "frame_1.jpg,north,0,50,0,0,0\n")
+    refused([*files[:5], str(bad), "--focal", "120"], "latitude_deg is no number: 'north'")
+    bad.write_text(POSE + "gone.jpg,24,120,50,0,0,0\n")
+    refused([*files[:5], str(bad), "--focal", "120"], "a frame of the poses is missing")
+    refused([*files, "--focal", "120", "--calibrate", str(folder / "poses.csv")], "no frame is left to score")

@@ -1,0 +1,173 @@
+"""`locate`: where was the UAV, from each of its frames and a map."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import file, folder, seed_option
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.errors import InputError
+from wnn2hdl.navigate.camera import Camera
+from wnn2hdl.navigate.poses import Pose, frame_files, read_poses
+from wnn2hdl.navigate.recording import Recording, split
+
+if TYPE_CHECKING:
+    from wnn2hdl.navigate.results import SearchKind
+
+REFERENCE_WINDOW_M = 95.0
+"""The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre a pixel."""
+
+
+class CalibrationType(click.ParamType[int | Path]):
+    """How many frames of the flight, or a file with the poses of some."""
+
+    name = "COUNT|POSES.csv"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int | Path:
+        """The count, or the file."""
+        text = str(value)
+        if text.isdecimal():
+            if int(text) < 3:
+                self.fail(f"{text} frames are too few to calibrate on; give at least 3", param, ctx)
+            return int(text)
+        if not text.endswith(".csv"):
+            self.fail(f"{text!r} is neither a count nor a CSV of poses", param, ctx)
+        return Path(text)
+
+
+@app.command("locate")
+@click.option("--map", "map_file", type=file, help="GeoTIFF of the country flown over.")
+@click.option("--frames", type=folder, help="Folder of the camera's frames.")
+@click.option("--poses", "poses_file", type=file, help="CSV of the frames' logged poses, the truth.")
+@click.option("--camera", "camera_file", type=file, help="TOML of the camera.")
+@click.option("--focal", type=click.FloatRange(1, 1e6), metavar="PIXELS", help="Focal length in the frames.")
+@click.option(
+    "--calibrate",
+    "calibration",
+    type=CalibrationType(),
+    help="Fit camera, edges and confidence on so many frames, or on those of a CSV; they are not scored.",
+)
+@click.option(
+    "--search",
+    type=click.Choice(["window", "map", "both"]),
+    default="both",
+    show_default=True,
+    help="Search a window around the truth, the whole map, or each.",
+)
+@click.option(
+    "--window",
+    "window_m",
+    type=click.FloatRange(1, 100_000),
+    default=REFERENCE_WINDOW_M,
+    show_default=True,
+    metavar="METRES",
+    help="From the window's middle to its sides.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Frames at a time.  [default: all cores]")
+@seed_option
+@click.option("-o", "output", type=folder, default=Path("build/flight"), show_default=True, help="Folder.")
+@json_option
+def locate_command(
+    map_file: Path | None,
+    frames: Path | None,
+    poses_file: Path | None,
+    camera_file: Path | None,
+    focal: float | None,
+    calibration: int | Path | None,
+    search: str,
+    window_m: float,
+    jobs: int | None,
+    seed: int,
+    output: Path,
+    as_json: bool,
+) -> None:
+    """Locate the frames of a flight on a map, by several methods side by side.
+
+    Without --map, a small synthetic flight is located. A window around the logged position bounds the error:
+    with the default of 95 m, the reference's, no error can exceed 134 m, and a blind guess would be 73 m off
+    on average. Searching the whole map has no such help.
+
+    \b
+    Examples:
+      wnn2hdl locate
+      wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --camera camera.toml
+      wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --focal 750 --calibrate 10
+    """
+    # Not at the top: they load what other commands need not wait for.
+    from wnn2hdl.navigate.flight import run_flight
+    from wnn2hdl.navigate.output import flight_markdown
+    from wnn2hdl.navigate.summary import summary, write_run
+
+    given = {"--map": map_file, "--frames": frames, "--poses": poses_file}
+    searches: dict[SearchKind, float | None] = {}
+    if search in ("window", "both"):
+        searches["window"] = window_m
+    if search in ("map", "both"):
+        searches["map"] = None
+    with progress() as report:
+        if map_file and frames and poses_file:
+            scored, calibrating = _divided(read_poses(poses_file), calibration, frames)
+            recording = Recording.of_files(map_file, frames, scored, _camera(camera_file, focal))
+        else:
+            _refuse_halves(given, {"--camera": camera_file, "--focal": focal})
+            report("flight", 0, 1)
+            recording = Recording.embedded(seed)
+            report("flight", 1, 1)
+            scored, calibrating = _divided(recording.poses, calibration, None)
+            recording = recording.scoring(scored)
+        run = run_flight(recording, calibrating, searches, report, jobs=jobs)
+        files = write_run(run, output)
+    data = summary(run) | {"files": [str(path) for path in files]}
+    emit(data, f"{flight_markdown(run.result)}\nwritten to {output}", as_json=as_json)
+
+
+def _divided(
+    poses: tuple[Pose, ...], calibration: int | Path | None, frames: Path | None
+) -> tuple[tuple[Pose, ...], tuple[Pose, ...]]:
+    """Poses that are scored and poses that calibrate."""
+    if calibration is None:
+        return poses, ()
+    if isinstance(calibration, int):
+        calibrating, scored = split(poses, calibration)
+        return scored, calibrating
+    if frames is None:
+        raise InputError(
+            "the embedded flight has no file of poses", value=calibration, mend="give a count to --calibrate"
+        )
+    calibrating = read_poses(calibration)
+    frame_files(calibrating, frames)
+    names = {pose.frame for pose in calibrating}
+    scored = tuple(pose for pose in poses if pose.frame not in names)
+    if not scored:
+        raise InputError(
+            "no frame is left to score", value=calibration, mend="calibrate on other frames than --poses has"
+        )
+    return scored, calibrating
+
+
+def _camera(path: Path | None, focal: float | None) -> Camera | float:
+    if path and focal:
+        raise InputError("--camera and --focal both tell the focal length", mend="give one of them")
+    if path:
+        return Camera.read(path)
+    if focal:
+        return focal
+    raise InputError("nothing is known of the camera", mend="give --camera CAMERA.toml or --focal PIXELS")
+
+
+def _refuse_halves(given: dict[str, Path | None], camera: dict[str, object]) -> None:
+    """Refuse part of a flight's options; none at all is the embedded flight."""
+    missing = [name for name, value in given.items() if value is None]
+    if len(missing) < len(given):
+        raise InputError(
+            "these options go together", value=", ".join(given), mend=f"give {', '.join(missing)}"
+        )
+    told = [name for name, value in camera.items() if value is not None]
+    if told:
+        raise InputError(
+            "the embedded flight has its own camera",
+            value=" ".join(told),
+            mend=f"drop it, or give {missing[0]}",
+        )

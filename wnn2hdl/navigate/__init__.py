@@ -1,0 +1,1 @@
+"""Where is the UAV, from edges alone: camera frames matched with a georeferenced map."""

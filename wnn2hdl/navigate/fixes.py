@@ -1,0 +1,128 @@
+"""From matches to positions: which are given as fixes, how far they are off, and the track through them."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from wnn2hdl.navigate.distance import geodesic_m, great_circle_m
+from wnn2hdl.navigate.matching import Acceptance, Match, choose_threshold, peak_weights
+from wnn2hdl.navigate.navigator import Located
+from wnn2hdl.navigate.poses import Pose
+from wnn2hdl.navigate.results import FAR_M, FrameFix
+from wnn2hdl.navigate.track import Fix, follow, frame_times
+from wnn2hdl.navigate.world import MapGrid
+
+UNCALIBRATED = Acceptance(0.0, 0.0, 1.0)
+"""Without calibration frames nothing is known of a confidence's worth, so every position is given."""
+
+PRECISION = 0.95
+"""Share of the fixes given that should be right: off by less than `FAR_M`."""
+
+WRONG_M = 60.0
+"""A peak this far from the truth is a wrong one, whatever else it is."""
+
+TRACK_STD_M = 30.0
+"""A track's position is given while its filter believes in this deviation or less."""
+
+
+def fixes(
+    grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | None], acceptance: Acceptance
+) -> tuple[FrameFix, ...]:
+    """Each frame's best position; it is a fix if its confidence is accepted."""
+    return tuple(
+        _fix(
+            grid, pose, at.places[0], at.match.confidence, acceptance.accepts(at.match.confidence), at.seconds
+        )
+        if at
+        else _nothing(pose)
+        for pose, at in zip(poses, located, strict=True)
+    )
+
+
+def accepted(grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | None]) -> Acceptance:
+    """From which confidence on a fix is given, by frames whose position is known.
+
+    What a match would have been worth without the peaks near the truth, tells what a wrong match looks like.
+    The threshold lies in the middle between the least confidence to be accepted and the next lower one of a
+    wrong match, as nothing is known of what lies between them. Where no threshold is expected to make
+    `PRECISION` of the fixes right, none are given.
+    """
+    known = [(pose, at) for pose, at in zip(poses, located, strict=True) if at]
+    if not known:
+        return UNCALIBRATED
+    errors, wrong = [], []
+    for pose, at in known:
+        pixel = grid.to_pixel(pose.latitude_deg, pose.longitude_deg)
+        east, north = (float(axis) for axis in grid.to_metres(*pixel))
+        misses = [float(np.hypot(one[0] - east, one[1] - north)) for one in at.places]
+        errors.append(misses[0])
+        peaks = tuple(peak for peak, miss in zip(at.match.peaks, misses, strict=True) if miss > WRONG_M)
+        if peaks:
+            wrong.append(Match(peaks, at.match.mean, at.match.std).confidence)
+    confidences = [at.match.confidence for _, at in known]
+    acceptance = choose_threshold(confidences, errors, wrong, precision=PRECISION)
+    if acceptance.precision < PRECISION:
+        return Acceptance(math.inf, 0.0, 0.0)
+    missed = [confidence for confidence, error in zip(confidences, errors, strict=True) if error >= FAR_M]
+    below = [confidence for confidence in (*wrong, *missed) if confidence < acceptance.threshold]
+    middle = (acceptance.threshold + max(below)) / 2 if below else acceptance.threshold
+    return replace(acceptance, threshold=middle)
+
+
+def tracked(
+    grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | None], half_width_m: float | None
+) -> tuple[FrameFix, ...]:
+    """The positions of a filter that takes all frames' peaks in turn.
+
+    Where the filter knows nothing, at its start or when it has lost the track, the position is that of the
+    frame alone, and no fix is given.
+    """
+    offered = [
+        [
+            Fix(east, north, weight=weight)
+            for (east, north), weight in zip(at.places, peak_weights(at.match), strict=True)
+        ]
+        if at
+        else []
+        for at in located
+    ]
+    area = float(grid.valid.sum()) * grid.gsd_m**2 if half_width_m is None else (2 * half_width_m) ** 2
+    points = follow(offered, frame_times([pose.frame for pose in poses]), area_m2=area)
+    track = []
+    for pose, at, point in zip(poses, located, points, strict=True):
+        seconds = at.seconds if at else 0.0
+        if point:
+            place = point.east_m, point.north_m
+            track.append(_fix(grid, pose, place, 1 / point.std_m, point.std_m <= TRACK_STD_M, seconds))
+        elif at:
+            track.append(_fix(grid, pose, at.places[0], 0.0, False, seconds))
+        else:
+            track.append(_nothing(pose))
+    return tuple(track)
+
+
+def _fix(
+    grid: MapGrid, pose: Pose, place: tuple[float, float], confidence: float, fixed: bool, seconds: float
+) -> FrameFix:
+    truth = pose.latitude_deg, pose.longitude_deg
+    pixel = grid.from_metres(*place)
+    latitude, longitude = (float(axis) for axis in grid.to_geographic(*pixel))
+    return FrameFix(
+        pose.frame,
+        *truth,
+        latitude,
+        longitude,
+        float(great_circle_m(*truth, latitude, longitude)),
+        float(geodesic_m(*truth, latitude, longitude)),
+        confidence,
+        fixed,
+        seconds,
+    )
+
+
+def _nothing(pose: Pose) -> FrameFix:
+    return FrameFix(
+        pose.frame, pose.latitude_deg, pose.longitude_deg, None, None, None, None, 0.0, False, 0.0
+    )

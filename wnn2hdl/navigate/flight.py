@@ -1,0 +1,169 @@
+"""A flight over a map, every frame located by every method: calibrate, learn, search, compare."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from joblib import Parallel, delayed
+from numpy.typing import NDArray
+
+from wnn2hdl.edges import grey
+from wnn2hdl.navigate.calibrate import Calibration, calibrate
+from wnn2hdl.navigate.camera import Camera
+from wnn2hdl.navigate.fixes import accepted, fixes, tracked
+from wnn2hdl.navigate.geometry import ground_patch
+from wnn2hdl.navigate.matching import Acceptance
+from wnn2hdl.navigate.methods import Method, compared_methods
+from wnn2hdl.navigate.navigator import Located, Navigator, Place, headings
+from wnn2hdl.navigate.poses import Pose
+from wnn2hdl.navigate.recording import Recording
+from wnn2hdl.navigate.results import FlightResult, MethodResult, SearchKind, SearchResult
+from wnn2hdl.navigate.weightless import GSD_M, Sighting, by_rule, learn
+from wnn2hdl.navigate.world import MapGrid
+
+T = TypeVar("T")
+
+Progress = Callable[[str, int, int], None]
+"""Told a step's name, how many of its parts are done, and how many there are."""
+
+COARSER = 2
+"""Calibration matches on a grid this much coarser: it needs metres, not half metres."""
+
+
+@dataclass(frozen=True)
+class FlightRun:
+    """All that a run found out.
+
+    Attributes:
+        result: figures and fixes, for tables and pictures.
+        grid: the map as it was matched.
+        calibration: None if the camera was taken as given.
+        acceptances: of each search and method: from which confidence on a fix is given.
+        methods: in the order of each search's rows.
+    """
+
+    result: FlightResult
+    grid: MapGrid
+    calibration: Calibration | None
+    acceptances: Mapping[Place, Acceptance]
+    methods: tuple[Method, ...]
+
+    def rows(self, search: SearchResult) -> dict[str, MethodResult]:
+        """A search's rows by their names in JSON."""
+        keys = [method.key for method in self.methods]
+        keys += [f"{key}-track" for key in keys]
+        return dict(zip(keys, search.methods, strict=True))
+
+
+def run_flight(
+    recording: Recording,
+    calibrating: Sequence[Pose],
+    searches: Mapping[SearchKind, float | None],
+    progress: Progress,
+    *,
+    jobs: int | None = None,
+) -> FlightRun:
+    """Locate all frames of a recording.
+
+    Args:
+        recording: its poses are those that are scored.
+        calibrating: poses of other frames, on which the camera, the weightless edges and the thresholds of
+            confidence are fitted; empty to take all as it is.
+        searches: by kind, half the side in metres of a window around the logged position; None for the whole
+            map.
+        progress: what to tell how far it is.
+        jobs: frames located at a time; as many as the machine has cores if not told.
+
+    Raises:
+        InputError: a frame cannot be read, or the calibration fails.
+    """
+    progress("map", 0, 1)
+    grid = recording.world.resampled()
+    progress("map", 1, 1)
+    calibration = calibrated(recording, calibrating, progress) if calibrating else None
+    flight = [pose.frame for pose in (*recording.poses, *calibrating)]
+
+    def camera_at(pose: Pose) -> Camera:
+        return calibration.camera_at(pose.frame, flight) if calibration else recording.camera
+
+    coarse = recording.world.resampled(GSD_M)
+    heading = calibration.heading_search_deg if calibration else 0.0
+    if calibrating:
+        sightings = (
+            _sighting(coarse, recording.read(pose), pose, camera_at(pose), heading) for pose in calibrating
+        )
+        weightless = learn(coarse.image, coarse.valid, sightings)
+    else:
+        weightless = by_rule()
+    methods = compared_methods(weightless)
+    navigator = Navigator({None: grid, GSD_M: coarse}, methods)
+
+    def locate(pose: Pose) -> dict[Place, Located | None]:
+        windows = {
+            kind: None if half is None else (pose.latitude_deg, pose.longitude_deg, half)
+            for kind, half in searches.items()
+        }
+        return navigator.locate(recording.read(pose), pose, camera_at(pose), windows, heading)
+
+    known = list(_in_parallel(locate, calibrating, jobs, "thresholds", progress))
+    found = list(_in_parallel(locate, recording.poses, jobs, "frames", progress))
+    searched, acceptances = [], {}
+    for kind, half in searches.items():
+        rows, tracks = [], []
+        for method in methods:
+            place = kind, method.key
+            acceptance = accepted(grid, calibrating, [one[place] for one in known])
+            located = [one[place] for one in found]
+            rows.append(MethodResult(method.title, fixes(grid, recording.poses, located, acceptance)))
+            tracks.append(
+                MethodResult(f"{method.title}, track", tracked(grid, recording.poses, located, half))
+            )
+            acceptances[place] = acceptance
+        searched.append(SearchResult(kind, half, (*rows, *tracks)))
+    camera = calibration.cameras[0] if calibration else recording.camera
+    result = FlightResult(
+        map_name=recording.map_name,
+        ground_sample_distance_m=grid.gsd_m,
+        focal_px=camera.fx,
+        tilt_deg=camera.tilt_deg,
+        calibrated_on=tuple(pose.frame for pose in calibrating),
+        searches=tuple(searched),
+    )
+    return FlightRun(result, grid, calibration, acceptances, methods)
+
+
+def calibrated(recording: Recording, calibrating: Sequence[Pose], progress: Progress) -> Calibration:
+    """The camera as fitted on some frames."""
+    coarse = recording.world.resampled(COARSER * recording.world.gsd_m)
+    frames = [grey(recording.read(pose)) for pose in calibrating]
+    return calibrate(
+        coarse,
+        grey(coarse.image),
+        frames,
+        calibrating,
+        recording.camera,
+        lambda done, total: progress("calibration", done, total),
+    )
+
+
+def _sighting(
+    grid: MapGrid, frame: NDArray[np.uint8], pose: Pose, camera: Camera, heading_search_deg: float
+) -> Sighting:
+    """A calibration frame as the weightless edges learn from it."""
+    patches = tuple(
+        ground_patch(frame, turned, camera, grid.gsd_m) for turned in headings(pose, heading_search_deg)
+    )
+    row, column = (float(axis) for axis in grid.to_pixel(pose.latitude_deg, pose.longitude_deg))
+    return Sighting(patches, row, column)
+
+
+def _in_parallel(
+    locate: Callable[[Pose], T], poses: Sequence[Pose], jobs: int | None, step: str, progress: Progress
+) -> Iterator[T]:
+    """Results in order. Threads, since they share the map and spend their time in OpenCV and NumPy."""
+    workers = Parallel(n_jobs=jobs or os.cpu_count() or 1, prefer="threads", return_as="generator")
+    for done, result in enumerate(workers(delayed(locate)(pose) for pose in poses), start=1):
+        progress(step, done, len(poses))
+        yield result

@@ -1,0 +1,22 @@
+"""Template matching: where in a map does a picture lie, and how sure is that."""
+
+from wnn2hdl.navigate.matching.confidence import Acceptance, choose_threshold, peak_weights, wrong_windows
+from wnn2hdl.navigate.matching.index import MapIndex
+from wnn2hdl.navigate.matching.peaks import Match, Peak, Window
+from wnn2hdl.navigate.matching.poses import PoseMatch, search_poses
+from wnn2hdl.navigate.matching.scores import Picture, Score
+
+__all__ = [
+    "Acceptance",
+    "MapIndex",
+    "Match",
+    "Peak",
+    "Picture",
+    "PoseMatch",
+    "Score",
+    "Window",
+    "choose_threshold",
+    "peak_weights",
+    "search_poses",
+    "wrong_windows",
+]

@@ -1,0 +1,122 @@
+"""Where the UAV was and how it was turned at each frame, as its log says."""
+
+import csv
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from wnn2hdl.errors import InputError
+
+COLUMNS = (
+    "frame",
+    "latitude_deg",
+    "longitude_deg",
+    "height_above_ground_m",
+    "yaw_deg",
+    "pitch_deg",
+    "roll_deg",
+)
+"""The columns of a file of poses; others are left out."""
+
+_RANGES = {
+    "latitude_deg": (-90.0, 90.0),
+    "longitude_deg": (-180.0, 180.0),
+    "height_above_ground_m": (0.1, 100_000.0),
+    "yaw_deg": (-360.0, 360.0),
+    "pitch_deg": (-90.0, 90.0),
+    "roll_deg": (-180.0, 180.0),
+}
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One frame's position and attitude.
+
+    The angles turn the body's axes (forward, right, down) against north, east and down, in the order yaw,
+    pitch, roll about the turned axes.
+
+    Attributes:
+        frame: name of the frame's file.
+        latitude_deg: WGS 84, north positive.
+        longitude_deg: WGS 84, east positive.
+        height_m: above the ground, metres.
+        yaw_deg: heading, clockwise from north: 90 flies east.
+        pitch_deg: nose up positive.
+        roll_deg: right side down positive.
+    """
+
+    frame: str
+    latitude_deg: float
+    longitude_deg: float
+    height_m: float
+    yaw_deg: float
+    pitch_deg: float = 0.0
+    roll_deg: float = 0.0
+
+
+def read_poses(path: Path) -> tuple[Pose, ...]:
+    """Read a CSV with the columns `COLUMNS`, in any order, one line a frame.
+
+    Returns:
+        The poses in the file's order, which is taken for the order of flight.
+
+    Raises:
+        InputError: the file cannot be read, has no lines or lacks a column; a value is no number or out of
+            range; a frame occurs twice.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            reader = csv.DictReader(stream)
+            missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+            if missing:
+                raise InputError(
+                    f"the poses {path} lack a column",
+                    value=", ".join(missing),
+                    mend=f"the first line names {','.join(COLUMNS)}",
+                )
+            poses = tuple(_pose(row, f"line {reader.line_num} of {path}") for row in reader)
+    except OSError as error:
+        raise InputError("cannot read the poses", value=f"{path} ({error.strerror})") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError("the poses are no CSV", value=f"{path} ({error})") from error
+    if not poses:
+        raise InputError("no poses", value=path, mend="give one line a frame")
+    seen: set[str] = set()
+    for pose in poses:
+        if pose.frame in seen:
+            raise InputError(
+                f"a frame occurs twice in {path}", value=pose.frame, mend="keep one of its lines"
+            )
+        seen.add(pose.frame)
+    return poses
+
+
+def frame_files(poses: tuple[Pose, ...], folder: Path) -> tuple[Path, ...]:
+    """The file of each pose's frame.
+
+    Raises:
+        InputError: one of them does not exist, or its name leads out of the folder.
+    """
+    files = tuple(folder / pose.frame for pose in poses)
+    for pose, file in zip(poses, files, strict=True):
+        if Path(pose.frame).name != pose.frame or not file.is_file():
+            raise InputError(
+                "a frame of the poses is missing", value=file, mend="put it there or drop its line"
+            )
+    return files
+
+
+def _pose(row: dict[str, str], where: str) -> Pose:
+    if not row["frame"]:
+        raise InputError("a frame without a name", value=where)
+    numbers = []
+    for name, (low, high) in _RANGES.items():
+        text = row[name]
+        try:
+            number = float(text)
+        except (ValueError, TypeError):
+            raise InputError(f"{where}: {name} is no number", value=repr(text)) from None
+        if not (math.isfinite(number) and low <= number <= high):
+            raise InputError(f"{where}: {name} is not within {low:g} to {high:g}", value=text)
+        numbers.append(number)
+    return Pose(row["frame"], *numbers)

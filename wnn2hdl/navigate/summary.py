@@ -1,0 +1,84 @@
+"""A run as one JSON object, and as files."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.ir.files import write_json
+from wnn2hdl.navigate.flight import FlightRun
+from wnn2hdl.navigate.output import write_results
+from wnn2hdl.navigate.plots import plot_errors, plot_tracks
+from wnn2hdl.navigate.results import MethodResult, SearchResult
+
+FIGURES = (
+    "mean_m",
+    "std_m",
+    "variance_m2",
+    "median_m",
+    "false_positive_percent",
+    "true_positive_percent",
+    "fixed_percent",
+    "fixed_mean_m",
+    "fixed_true_percent",
+    "mean_seconds",
+)
+"""Of each method; errors are of all frames as the reference counts, those of ``fixed_…`` of given fixes.
+
+``confidence_threshold`` is null where no fix is ever given, and for tracks, whose filter judges itself.
+"""
+
+
+def summary(run: FlightRun) -> dict[str, Any]:
+    """What ``locate --json`` prints.
+
+    ``methods`` are those of the window's search, or of the whole map's if nothing else was searched.
+    """
+    searches = {search.kind: _search(run, search) for search in run.result.searches}
+    first = searches.get("window") or searches["map"]
+    return {
+        "map": run.result.map_name,
+        "ground_sample_distance_m": run.result.ground_sample_distance_m,
+        "frames": len(run.result.searches[0].methods[0].fixes),
+        "methods": first["methods"],
+        "searches": searches,
+        "calibration": run.calibration.report() if run.calibration else None,
+        "largest_geodesic_difference_m": run.result.largest_geodesic_difference_m,
+    }
+
+
+def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
+    """Write tables, GeoJSON, plots of errors and tracks, and the calibration.
+
+    Returns:
+        the files written.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    files = [*write_results(folder, run.result), *plot_errors(run.result, folder / "errors")]
+    for search in run.result.searches:
+        raw = replace(search, methods=search.methods[: len(run.methods)])
+        files += plot_tracks(
+            raw, run.grid.image, run.grid.to_pixel, run.grid.gsd_m, folder / f"tracks_{search.key}"
+        )
+    if run.calibration:
+        write_json(folder / "calibration.json", run.calibration.report())
+        files.append(folder / "calibration.json")
+    return tuple(files)
+
+
+def _search(run: FlightRun, search: SearchResult) -> dict[str, Any]:
+    return {
+        "half_width_m": search.half_width_m,
+        "furthest_m": search.furthest_m,
+        "blind_mean_m": search.blind_mean_m,
+        "methods": {key: _figures(run, search, key, row) for key, row in run.rows(search).items()},
+    }
+
+
+def _figures(run: FlightRun, search: SearchResult, key: str, row: MethodResult) -> dict[str, Any]:
+    acceptance = run.acceptances.get((search.kind, key))
+    figures = {name: getattr(row, name) for name in FIGURES}
+    threshold = acceptance.threshold if acceptance and math.isfinite(acceptance.threshold) else None
+    return figures | {"confidence_threshold": threshold}
