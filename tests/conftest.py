@@ -1,6 +1,9 @@
 """Fixtures that more than one part of the suite needs."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,3 +16,58 @@ def realdata() -> Path:
     if not REAL_DATA.is_dir():
         pytest.skip("the real imagery is not beside this repository")
     return REAL_DATA
+
+
+@pytest.fixture(scope="session")
+def write_build() -> Callable[..., Path]:
+    """``write_build(folder, **changes)`` writes a build that nobody synthesised: its figures are made up.
+
+    Model, design and networks are real; changes are those of the fields of `BuildReport`.
+    """
+    from wnn2hdl.dataset import from_samples
+    from wnn2hdl.edges import boundary
+    from wnn2hdl.emit import write_manifest
+    from wnn2hdl.encode import parse_bits
+    from wnn2hdl.ir.files import write_json
+    from wnn2hdl.minimise import map_luts
+    from wnn2hdl.pipeline.design import Design, tables
+    from wnn2hdl.pipeline.reporting import model_figures
+    from wnn2hdl.pipeline.training import train
+    from wnn2hdl.report import BuildReport, Care, PartFigures, Parts, Proof, report_dict
+    from wnn2hdl.verify.specification import Specification
+
+    model = train(
+        from_samples(2, 64, seed=1),
+        parse_bits("R7,R6,R5,G7,G6,G5,B7,B6"),
+        address_bits=3,
+        rams=6,
+        bleaching=None,
+        seed=0,
+        progress=lambda *_: None,
+    )
+    specification = Specification.exact(model, boundary())
+    networks = {name: map_luts(table, effort=0).network for name, table in tables(specification).items()}
+    design = Design(specification, "exact", "block", "luts", networks)
+    luts = {**{name: len(network.luts) for name, network in networks.items()}, "match": 10, "sobel": 74}
+    luts["block"] = 9 * luts["pixel"] + luts["edge"]
+    figures = {part: PartFigures(count, carry4=0, delay_ps=100 * count) for part, count in luts.items()}
+    report = BuildReport(
+        name="made-up",
+        target="block",
+        mode="exact",
+        parts=Parts(**figures),
+        proof=Proof("proved", "SAT", 0.5),
+        care=Care(256, 1.0, 256),
+        accuracy=0.9,
+        confusion=((90, 10), (10, 90)),
+        model=model_figures(model),
+    )
+
+    def write(folder: Path, **changes: Any) -> Path:
+        folder.mkdir(parents=True)
+        design.save(folder)
+        write_json(folder / "report.json", report_dict(replace(report, **({"name": folder.name} | changes))))
+        write_manifest(folder, ["design.json", "model.json", "report.json"], versions={}, options={})
+        return folder
+
+    return write

@@ -1,39 +1,74 @@
 """`demo`: everything on the embedded default."""
 
 from pathlib import Path
+from typing import Any
 
 import click
+from rich.console import Console
+from rich.table import Table
 
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.errors import CheckError
-from wnn2hdl.pipeline.demo import run_demo
 
 
 @app.command("demo")
-@click.option("-o", "output", type=folder, default=Path("build/demo"), show_default=True)
+@click.option("-o", "output", type=folder, default=Path("build/demo"), show_default=True, help="Folder.")
 @seed_option
 @json_option
 def demo_command(output: Path, seed: int, as_json: bool) -> None:
-    """Landscapes to proved Verilog: generate, train, compile, simulate, without a file of yours."""
+    """Landscapes to proved Verilog, a map, a flight and a page of it all, without a file of yours.
+
+    \b
+    Examples:
+      wnn2hdl demo
+      wnn2hdl demo --seed 1 -o build/another
+    """
+    from wnn2hdl.demo import run_demo  # every application; other commands need not wait for them
+    from wnn2hdl.navigate.summary import summary
+
     with progress() as report:
         demo = run_demo(output, seed, report)
+    flight = summary(demo.flight) if demo.flight else None
     data = {
+        "page": str(demo.page),
+        "sweep": demo.outcome.to_json(),
         "reference": demo.reference.report,
         "smallest": demo.smallest.report,
-        "windows": demo.playback.windows,
-        "pictures": [str(path) for path in demo.pictures],
+        "windows": demo.windows,
+        "scan": demo.scan,
+        "flight": flight,
+        "missing": demo.missing,
     }
-    text = "\n\n".join(
-        [
-            parts_table(demo.reference.report, demo.reference.folder),
-            parts_table(demo.smallest.report, demo.smallest.folder),
-            f"{demo.playback.windows:,} windows of a landscape ran through the smallest circuit; see "
-            + ", ".join(str(path) for path in demo.pictures),
-        ]
-    )
-    emit(data, text, as_json=as_json)
+    lines = [
+        parts_table(demo.reference.report, demo.reference.folder),
+        parts_table(demo.smallest.report, demo.smallest.folder),
+        f"{len(demo.outcome.plan)} circuits trained and costed in a sweep; {demo.windows:,} windows of a "
+        "landscape ran through the smallest circuit, all bits right",
+    ]
+    if demo.scan:
+        lines.append(f"a landscape mapped: {demo.scan['deforested']['share']:.1%} deforested")
+    if flight:
+        lines.append(_flight_table(flight))
+    if demo.missing:
+        lines.append(f"map and flight were left out: {demo.missing}")
+    lines.append(f"Open {demo.page.resolve().as_uri()}")
+    emit(data, "\n\n".join(lines), as_json=as_json)
     for build in (demo.reference, demo.smallest):
         if build.failure is not None:
             raise CheckError("the circuit is not the model", value=build.failure, mend=f"see {build.folder}")
+
+
+def _flight_table(flight: dict[str, Any]) -> str:
+    table = Table(title=f"flight: mean error of {flight['frames']} frames, m", title_justify="left")
+    table.add_column("method")
+    for kind in flight["searches"]:
+        table.add_column(kind, justify="right")
+    for method in flight["methods"]:
+        means = (search["methods"][method]["mean_m"] for search in flight["searches"].values())
+        table.add_row(method, *("n/a" if mean is None else f"{mean:.1f}" for mean in means))
+    console = Console(width=100)
+    with console.capture() as captured:
+        console.print(table)
+    return captured.get().rstrip()

@@ -1,0 +1,229 @@
+"""The pages as Chromium shows them: figures, tables of LUTs on hover and focus, sorting, both themes."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from wnn2hdl.ir import LutNetwork
+from wnn2hdl.pipeline.design import Design
+from wnn2hdl.pipeline.reporting import open_entries, write_page
+from wnn2hdl.report import index_page
+from wnn2hdl.report.logic import expression, grid
+from wnn2hdl.report.page import form
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Headless Chromium; where CI lacks it, that is a failure."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None and not os.environ.get("CI"):
+        pytest.skip("Chromium is not installed")
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def folder(write_build: Callable[..., Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A build with its page."""
+    made = write_build(tmp_path_factory.mktemp("builds") / "a")
+    write_page(made)
+    return made
+
+
+@pytest.fixture
+def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
+    """``open_page(path, color_scheme)`` shows a file; any message, error or request fails the test."""
+    wrong: list[str] = []
+    pages: list[Page] = []
+
+    def show(path: Path, scheme: Any = "light") -> Page:
+        page = browser.new_page(color_scheme=scheme, viewport={"width": 1180, "height": 900})
+        pages.append(page)
+        page.on("console", lambda message: wrong.append(message.text))
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.on("request", lambda request: wrong.append(request.url) if asked(request.url) else None)
+        page.goto(path.as_uri())
+        return page
+
+    yield show
+    for page in pages:
+        page.close()
+    assert wrong == []
+
+
+def asked(url: str) -> bool:
+    """Whether an address is that of something outside the page."""
+    return not url.startswith(("file:", "data:"))
+
+
+@pytest.fixture
+def network(folder: Path) -> LutNetwork:
+    """The network of the pixel classifier."""
+    return Design.load(folder).networks["pixel"]
+
+
+def at(report: Any, key: str) -> Any:
+    for step in key.split("."):
+        report = report[int(step)] if isinstance(report, list) else report[step]
+    return report
+
+
+def test_every_figure_shown_is_that_of_the_report(open_page: Callable[..., Page], folder: Path) -> None:
+    report = json.loads((folder / "report.json").read_text())
+    shown = open_page(folder / "report.html").evaluate(
+        "[...document.querySelectorAll('data[data-key]')].map(x => [x.dataset.key, x.value, x.innerText])"
+    )
+    assert len(shown) > 30
+    for key, value, _ in shown:
+        assert json.loads(value) == at(report, key), key
+    texts = {key: text for key, _, text in shown}
+    assert texts["parts.block.luts"] == form(report["parts"]["block"]["luts"])
+    assert texts["accuracy"] == "90.00 %"
+
+
+def test_bars_of_saturation_are_as_high_as_their_figures(
+    open_page: Callable[..., Page], folder: Path
+) -> None:
+    bars = open_page(folder / "report.html").evaluate(
+        """[...document.querySelectorAll('.strip span')].map(x => [Number(x.dataset.value),
+        parseFloat(getComputedStyle(x, '::after').height) / x.clientHeight])"""
+    )
+    report = json.loads((folder / "report.json").read_text())
+    assert [value for value, _ in bars] == [
+        share for shares in report["model"]["saturation"] for share in shares
+    ]
+    assert all(abs(value - height) < 0.02 for value, height in bars)
+
+
+@pytest.mark.parametrize("way", ["hover", "focus", "press"])
+def test_a_lut_shows_its_table(
+    open_page: Callable[..., Page], folder: Path, network: LutNetwork, way: str
+) -> None:
+    page = open_page(folder / "report.html")
+    bench = page.locator(".bench").first
+    panel = bench.locator(".inspector")
+    assert network.cells[0].name in panel.locator("h4").inner_text()
+    for lut in network.luts[:3]:
+        box = bench.locator(f".cell[data-name='{lut.name}']")
+        if way == "hover":
+            box.hover()
+        elif way == "focus":
+            box.focus()
+        else:
+            box.dispatch_event("click")
+        assert f"{lut.name} = {expression(lut)}" in panel.inner_text()
+        cells = panel.locator("tbody td").all_inner_texts()
+        assert list(map(int, cells)) == [value for _, row in grid(lut).rows for value in row]
+        assert box.get_attribute("aria-pressed") == "true"
+        assert bench.locator(".cell[aria-pressed='true']").count() == 1
+        lit = bench.locator(".wire.lit").count()
+        readers = sum(lut.name in other.inputs for other in network.luts)
+        readers += sum(lut.name in (mux.low, mux.high, mux.select) for mux in network.muxes)
+        readers += sum(signal == lut.name for _, signal in network.outputs)
+        assert lit == len(set(lut.inputs)) + readers
+
+
+def test_keys_move_from_lut_to_lut(open_page: Callable[..., Page], folder: Path) -> None:
+    page = open_page(folder / "report.html")
+    names = page.locator(".bench").first.locator(".cell").evaluate_all("x => x.map(y => y.dataset.name)")
+    focused = "document.activeElement.dataset.name"
+    for _ in range(100):
+        page.keyboard.press("Tab")
+        if page.evaluate(focused) is not None:
+            break
+    assert page.evaluate(focused) == names[0]
+    page.keyboard.press("Tab")
+    assert page.evaluate(focused) == names[1]
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate(focused) == names[0]
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate(focused) == names[-1]
+    assert names[-1] in page.locator(".inspector h4").first.inner_text()
+
+
+def test_both_themes_and_the_button_between_them(open_page: Callable[..., Page], folder: Path) -> None:
+    def lightness(page: Page, what: str, key: str) -> float:
+        colour = page.evaluate(f"getComputedStyle(document.querySelector('{what}')).{key}")
+        red, green, blue = (int(x) for x in colour.removeprefix("rgb(").rstrip(")").split(", "))
+        return (red + green + blue) / 765
+
+    places = [
+        ("body", "backgroundColor"),
+        ("body", "color"),
+        (".chart text", "fill"),
+        (".schematic text", "fill"),
+    ]
+    light = open_page(folder / "report.html", "light")
+    dark = open_page(folder / "report.html", "dark")
+    assert [lightness(light, *place) > 0.5 for place in places] == [True, False, False, False]
+    assert [lightness(dark, *place) > 0.5 for place in places] == [False, True, True, True]
+    assert light.locator("button.theme").inner_text() == "Dark theme"
+    light.locator("button.theme").click()
+    assert [lightness(light, *place) > 0.5 for place in places] == [False, True, True, True]
+    assert light.locator("button.theme").inner_text() == "Light theme"
+    light.emulate_media(media="print")
+    assert [lightness(light, *place) > 0.5 for place in places[1:]] == [False, False, False]
+
+
+@pytest.mark.parametrize("width", [360, 768, 1180])
+def test_nothing_sticks_out_of_the_window(open_page: Callable[..., Page], folder: Path, width: int) -> None:
+    page = open_page(folder / "report.html")
+    page.set_viewport_size({"width": width, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_texts_stand_out_from_their_ground(open_page: Callable[..., Page], folder: Path) -> None:
+    # WCAG 2.1, contrast of 4.5 to 1 for text; the variables are all the colours that the page has.
+    script = """() => {
+      const probe = document.body.appendChild(document.createElement('i'));
+      const colour = name => {
+        probe.style.color = `var(--${name})`;
+        const parts = getComputedStyle(probe).color.match(/[\\d.]+/g).slice(0, 3).map(x => x / 255);
+        const linear = parts.map(x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+      };
+      const ratio = (a, b) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      const pairs = [['ink', 'paper'], ['ink', 'sheet'], ['ink', 'tint'], ['muted', 'paper'],
+        ['muted', 'sheet'], ['accent', 'paper'], ['accent', 'tint'], ['warn', 'warn-tint'],
+        ['ink', 'warn-tint'], ['bad', 'paper'], ['bad', 'bad-tint'], ['ink', 'bad-tint']];
+      return pairs.map(([a, b]) => [a, b, ratio(colour(a), colour(b))]);
+    }"""
+    for scheme in ("light", "dark"):
+        for ink, ground, ratio in open_page(folder / "report.html", scheme).evaluate(script):
+            assert ratio >= 4.5, (scheme, ink, ground)
+
+
+def test_columns_of_the_index_sort_by_mouse_and_keyboard(
+    open_page: Callable[..., Page], write_build: Callable[..., Path], tmp_path: Path
+) -> None:
+    accuracies = {"a": 0.9, "b": None, "c": 0.95, "d": 0.1}
+    folders = [write_build(tmp_path / name, accuracy=value) for name, value in accuracies.items()]
+    index = tmp_path / "index.html"
+    index.write_text(index_page(open_entries(folders, index)))
+    page = open_page(index)
+    heading = page.locator("th", has_text="accuracy")
+
+    def order() -> str:
+        return "".join(page.locator("tr[data-build]").evaluate_all("x => x.map(y => y.dataset.build)"))
+
+    assert order() == "abcd"
+    heading.locator("button").click()
+    assert (order(), heading.get_attribute("aria-sort")) == ("dacb", "ascending")
+    heading.locator("button").focus()
+    page.keyboard.press("Enter")
+    assert (order(), heading.get_attribute("aria-sort")) == ("cadb", "descending")
+    first = page.locator("th", has_text="build")
+    first.locator("button").click()
+    assert (order(), heading.get_attribute("aria-sort")) == ("abcd", "none")
+    page.get_by_role("link", name="c", exact=True).click()
+    assert page.locator("h1").inner_text() == "c"

@@ -1,0 +1,163 @@
+"""Everything on the embedded default: landscapes, sweep, circuits, proof, a map, a flight and a page."""
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wnn2hdl.dataset import Dataset, from_masks
+from wnn2hdl.encode import high_bits
+from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.images import write_png
+from wnn2hdl.ir.files import make_folder, write_text
+from wnn2hdl.navigate.flight import FlightRun, run_flight
+from wnn2hdl.navigate.recording import Recording, split
+from wnn2hdl.navigate.summary import write_run
+from wnn2hdl.pipeline.budget import train_under_budget
+from wnn2hdl.pipeline.compile import Build, compile_model
+from wnn2hdl.pipeline.landscapes import IMAGES, MASKS, write_landscapes
+from wnn2hdl.pipeline.planning import CompileOptions
+from wnn2hdl.pipeline.playback import play
+from wnn2hdl.pipeline.reporting import open_entries
+from wnn2hdl.pipeline.training import Progress, train, with_colours
+from wnn2hdl.report import Exhibit, index_page
+from wnn2hdl.samples import landscape
+from wnn2hdl.scan.local import run_locally as scan_locally
+from wnn2hdl.scan.options import ScanOptions
+from wnn2hdl.scan.scanning import OVERLAY_FILE, Scanner
+from wnn2hdl.sweep import Outcome, Recipe, draw, grid, present, run_locally, run_sweep
+
+if TYPE_CHECKING:
+    from wnn2hdl.navigate.results import SearchKind
+
+SIDE = 256
+TRAINING_SEED, TRAINING_IMAGES = 0, 12
+TEST_SEED, TEST_IMAGES = 1000, 4
+"""Landscapes to train on, and others to test on: different seeds, so no image is in both."""
+
+SCENE_SIDE, SCENE_SEED = 768, 2000
+"""The landscape that is mapped."""
+
+ADDRESS_BITS, RAMS, TRIALS, FINALIST_TRIALS, SWEEP_PIXELS = (2, 3, 4, 5), (4, 8, 12, 16), 5, 20, 5_000
+"""A sweep of seconds; the reference design's had n = 2…12, k = 2…20, ten trials, and 100 of a finalist."""
+
+MAX_LUTS = 2
+
+CALIBRATION_FRAMES = 5
+WINDOW_M = 95.0
+"""Half the side of the window that the reference searched."""
+
+PAGE = "index.html"
+
+
+@dataclass(frozen=True, eq=False)
+class Demo:
+    """What the demo made.
+
+    Attributes:
+        page: the page to open.
+        outcome: of the sweep.
+        reference: the reference design's discriminators (n = 4, k = 16), in domain mode.
+        smallest: the most accurate classifier of at most `MAX_LUTS` LUTs a pixel, on every input.
+        windows: 3x3 windows of a landscape that ran through the smallest circuit.
+        scan: the summary of the mapped landscape; None without the extra ``geo``.
+        flight: the located flight; None without it.
+        missing: what to install for what was left out; empty if nothing was.
+    """
+
+    page: Path
+    outcome: Outcome
+    reference: Build
+    smallest: Build
+    windows: int
+    scan: dict[str, Any] | None
+    flight: FlightRun | None
+    missing: str
+
+
+def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
+    """Run every stage on generated data.
+
+    Args:
+        folder: gets the landscapes (``training``, ``test``), ``sweep``, the builds ``reference`` and
+            ``smallest``, ``scan``, ``flight`` and the page.
+        seed: of the tuple mappings.
+        progress: told of every stage.
+
+    Raises:
+        InputError: the folder cannot be written.
+        ToolError: an outside program is missing or failed.
+    """
+    training = _landscapes(folder / "training", TRAINING_IMAGES, TRAINING_SEED, progress)
+    test = _landscapes(folder / "test", TEST_IMAGES, TEST_SEED, progress)
+    outcome = _sweep(training, folder / "sweep", seed, progress)
+    model = train(
+        training, high_bits(), address_bits=4, rams=16, bleaching=None, seed=seed, progress=progress
+    )
+    model = with_colours(model, training, progress)
+    options = CompileOptions(mode="domain", care=folder / "training" / IMAGES)
+    reference = compile_model(model, folder / "reference", options, progress, test)
+    small = train_under_budget(training, MAX_LUTS, trials=0, seed=seed, progress=progress)
+    small = with_colours(small, training, progress)
+    smallest = compile_model(small, folder / "smallest", CompileOptions(), progress, test)
+    picture = folder / "test" / IMAGES / f"{test.names[0]}"
+    playback = play(smallest.folder, picture, "amaranth", progress)
+    scanned = flight = None
+    missing = ""
+    try:
+        scanned = _scan(smallest.folder, folder, progress)
+        flight = _fly(folder / "flight", seed, progress)
+    except ExtraMissingError as error:
+        missing = error.line()
+    entries = open_entries([reference.folder, smallest.folder], folder / PAGE)
+    exhibits = _exhibits(outcome, scanned, flight)
+    write_text(folder / PAGE, index_page(entries, (entries[0], entries[1]), exhibits=exhibits))
+    return Demo(folder / PAGE, outcome, reference, smallest, playback.windows, scanned, flight, missing)
+
+
+def _landscapes(folder: Path, count: int, seed: int, progress: Progress) -> Dataset:
+    write_landscapes(folder, count, SIDE, seed=seed, progress=progress)
+    return from_masks(folder / IMAGES, folder / MASKS)
+
+
+def _sweep(training: Dataset, folder: Path, seed: int, progress: Progress) -> Outcome:
+    plan = grid(Recipe(seed, high_bits().bits, None, 1), ADDRESS_BITS, RAMS, TRIALS)
+    sets = draw(training, pixels=SWEEP_PIXELS, seed=seed, progress=progress)
+    outcome = run_sweep(sets, plan, folder, run_locally, progress, finalist_trials=FINALIST_TRIALS)
+    present(outcome, sets, folder)
+    return outcome
+
+
+def _scan(build: Path, folder: Path, progress: Progress) -> dict[str, Any]:
+    make_folder(folder / "scan")
+    scene = folder / "scan" / "scene.png"
+    write_png(scene, landscape(SCENE_SIDE, SCENE_SIDE, SCENE_SEED).image)
+    scanner = Scanner.open(build, ScanOptions(), partial(scan_locally, 1), progress)
+    return scanner.scan(scene, folder / "scan")
+
+
+def _fly(folder: Path, seed: int, progress: Progress) -> FlightRun:
+    recording = Recording.embedded(seed)
+    calibrating, scored = split(recording.poses, CALIBRATION_FRAMES)
+    searches: dict[SearchKind, float | None] = {"window": WINDOW_M, "map": None}
+    run = run_flight(recording.scoring(scored), calibrating, searches, progress)
+    make_folder(folder)
+    write_run(run, folder)
+    return run
+
+
+def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRun | None) -> list[Exhibit]:
+    exhibits = []
+    if scanned:
+        text = (
+            f"A landscape of {SCENE_SIDE}x{SCENE_SIDE} pixels as the smallest circuit sees it: "
+            f"{scanned['deforested']['share']:.1%} deforested."
+        )
+        exhibits.append(Exhibit("Map", text, "scan/summary.md", f"scan/{OVERLAY_FILE}"))
+    if flight:
+        row = flight.rows(flight.result.searches[-1])["perspective-weightless"]
+        text = f"A flight located on the whole map by weightless edges: {row.mean_m:.1f} m off on average."
+        exhibits.append(Exhibit("Flight", text, "flight/flight.md", "flight/tracks_map.png"))
+    text = f"{len(outcome.plan)} trained and costed circuits, and the statistics that choose among them."
+    exhibits.append(Exhibit("Sweep", text, "sweep/index.html", "sweep/pareto.png"))
+    return exhibits
