@@ -1,6 +1,6 @@
 """Fixtures that more than one part of the suite needs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,23 @@ def realdata() -> Path:
     if not REAL_DATA.is_dir():
         pytest.skip("the real imagery is not beside this repository")
     return REAL_DATA
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Any]:
+    """A scheduler and two workers, each in its own process; a task that killed one is not tried again."""
+    dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        distributed.LocalCluster(
+            n_workers=2,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=None,
+            local_directory=str(tmp_path / "workers"),
+        ) as running,
+    ):
+        yield running
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,7 @@ import pytest
 
 from wnn2hdl.ir import LutNetwork
 from wnn2hdl.report.gate import Limits, run_gate
-from wnn2hdl.report.index_page import Entry, index_page
+from wnn2hdl.report.index_page import Entry, Exhibit, index_page
 
 
 @pytest.fixture
@@ -51,6 +51,15 @@ def test_accuracies_are_charted_where_two_builds_have_one(entries: tuple[Entry, 
     page = index_page([entries[0], unmeasured])
     assert 'class="chart"' not in page
     assert '<data data-key="accuracy" value="null">n/a</data>' in page
+
+
+def test_exhibits_show_their_picture_and_lead_to_the_whole(entries: tuple[Entry, Entry]) -> None:
+    assert "At work" not in index_page(entries)
+    page = index_page(entries, exhibits=[Exhibit("Map", "Half is <cleared>.", "map/all.md", "map/it.png")])
+    assert "At work</h2>" in page
+    assert 'href="map/all.md"' in page
+    assert 'src="map/it.png"' in page
+    assert "Half is &lt;cleared&gt;." in page
 
 
 def test_names_are_escaped(entries: tuple[Entry, Entry]) -> None:

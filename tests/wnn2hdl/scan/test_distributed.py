@@ -1,15 +1,13 @@
-"""Windows on a cluster: nothing is lost when a worker dies."""
+"""Windows on a cluster."""
 
 import os
 import signal
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from wnn2hdl.errors import ExtraMissingError, InputError, ToolError
+from wnn2hdl.errors import InputError, ToolError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.classifiers import model_classifier
 from wnn2hdl.raster import Reading
@@ -19,29 +17,10 @@ from wnn2hdl.scan.local import run_locally
 from wnn2hdl.scan.task import Task
 from wnn2hdl.scan.windows import Window
 
-dask = pytest.importorskip("dask")
-distributed = pytest.importorskip("distributed")
-
 WINDOWS = [
     Window(index, row, column, 10, 70)
     for index, (row, column) in enumerate((r, c) for r in range(0, 150, 10) for c in range(0, 210, 70))
 ]
-
-
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[Any]:
-    """A scheduler and two workers, each in its own process; a task that killed one is not tried again."""
-    with (
-        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
-        distributed.LocalCluster(
-            n_workers=2,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=None,
-            local_directory=str(tmp_path / "workers"),
-        ) as running,
-    ):
-        yield running
 
 
 @pytest.fixture
@@ -77,18 +56,6 @@ def test_a_window_that_kills_every_worker_is_named(
     monkeypatch.setattr("wnn2hdl.scan.distributed._classify", _die_of_the_second)
     with pytest.raises(ToolError, match="from row 0 and column 70 on"):
         list(run_distributed(cluster.scheduler_address, task, WINDOWS[:6]))
-
-
-def test_an_address_where_nothing_listens_is_one_line(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wnn2hdl.pipeline.cluster._CONNECT_SECONDS", 1)
-    with pytest.raises(ToolError, match=r"no Dask scheduler answers: tcp://127.0.0.1:9;"):
-        next(run_distributed("tcp://127.0.0.1:9", task, WINDOWS))
-
-
-def test_the_extra_is_named_where_it_is_missing(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ExtraMissingError, match=r"wnn2hdl\[cluster\]"):
-        next(run_distributed("tcp://127.0.0.1:9", task, WINDOWS))
 
 
 def _die_of_the_second(task: Task, window: Window) -> WindowResult:

@@ -1,37 +1,16 @@
 import os
 import signal
-import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from wnn2hdl.errors import ExtraMissingError, ToolError
 from wnn2hdl.sweep.distributed import run_distributed
 from wnn2hdl.sweep.grid import Plan, Trial
 from wnn2hdl.sweep.pixels import PixelSets
 from wnn2hdl.sweep.store import Results, write_table
 from wnn2hdl.sweep.trial import Record, run_trials
-
-dask = pytest.importorskip("dask")
-distributed = pytest.importorskip("distributed")
-
-
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[Any]:
-    """A scheduler and two workers, each in its own process; a task that killed one is not tried again."""
-    with (
-        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
-        distributed.LocalCluster(
-            n_workers=2,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=None,
-            local_directory=str(tmp_path / "workers"),
-        ) as running,
-    ):
-        yield running
 
 
 def table(path: Path, plan: Plan, records: Iterable[list[Record]]) -> bytes:
@@ -84,22 +63,6 @@ def test_a_trial_that_kills_its_worker_is_recorded_and_does_not_stop_the_others(
     assert outcomes[chosen[1].name].error == "RuntimeError: every worker that ran this trial died"
     others = [outcomes[x.name] for x in (chosen[0], chosen[2], chosen[3])]
     assert others == run_trials(sets, [chosen[0], chosen[2], chosen[3]])
-
-
-def test_an_address_where_nothing_listens_is_one_line(
-    sets: PixelSets, plan: Plan, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("wnn2hdl.pipeline.cluster._CONNECT_SECONDS", 1)
-    with pytest.raises(ToolError, match=r"no Dask scheduler answers: tcp://127.0.0.1:9;"):
-        next(run_distributed("tcp://127.0.0.1:9", sets, trials(plan)))
-
-
-def test_the_extra_is_named_where_it_is_missing(
-    sets: PixelSets, plan: Plan, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ExtraMissingError, match=r"wnn2hdl\[cluster\]"):
-        next(run_distributed("tcp://127.0.0.1:9", sets, trials(plan)))
 
 
 def _die_of_the_second(sets: PixelSets, batch: tuple[Trial, ...]) -> list[Record]:

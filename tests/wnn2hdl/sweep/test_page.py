@@ -3,7 +3,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 from wnn2hdl.sweep.grid import Plan, grid
-from wnn2hdl.sweep.page import write_page
+from wnn2hdl.sweep.page import present, write_page
 from wnn2hdl.sweep.pixels import PixelSets
 from wnn2hdl.sweep.study import run_sweep
 from wnn2hdl.sweep.trial import run_trials
@@ -62,3 +62,18 @@ def test_a_sweep_of_failures_still_has_a_page(sets: PixelSets, plan: Plan, tmp_p
     outline = page(sets, failing, tmp_path, ())
     assert "0 are valid" in outline.text
     assert "2 failed" in outline.text
+
+
+def test_presenting_a_sweep_draws_what_its_page_shows(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
+    outcome = run_sweep(
+        sets,
+        plan,
+        tmp_path,
+        lambda sets, trials: iter([run_trials(sets, trials)]),
+        lambda *_: None,
+        finalist_trials=2,
+    )
+    outline = Outline()
+    outline.feed(present(outcome, sets, tmp_path).read_text(encoding="utf-8"))
+    assert len(outline.images) == len(list(tmp_path.glob("*.svg")))
+    assert all(picture.startswith("data:") for picture in outline.images)
