@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
@@ -42,7 +43,7 @@ class CalibrationType(click.ParamType[int | Path]):
 @click.option("--frames", type=folder, help="Folder of the camera's frames.")
 @click.option("--poses", "poses_file", type=file, help="CSV of the frames' logged poses, the truth.")
 @click.option("--camera", "camera_file", type=file, help="TOML of the camera.")
-@click.option("--focal", type=click.FloatRange(1, 1e6), metavar="PIXELS", help="Focal length in the frames.")
+@click.option("--focal", type=FiniteRange(1, 1e6), metavar="PIXELS", help="Focal length in the frames.")
 @click.option(
     "--calibrate",
     "calibration",
@@ -59,11 +60,27 @@ class CalibrationType(click.ParamType[int | Path]):
 @click.option(
     "--window",
     "window_m",
-    type=click.FloatRange(1, 100_000),
+    type=FiniteRange(1, 100_000),
     default=REFERENCE_WINDOW_M,
     show_default=True,
     metavar="METRES",
     help="From the window's middle to its sides.",
+)
+@click.option(
+    "--heading-tolerance",
+    "heading_deg",
+    type=FiniteRange(0, 180),
+    metavar="DEGREES",
+    help="Try headings up to so much beside the logged ones.  [default: as calibrated, or 0]",
+)
+@click.option(
+    "--scale-tolerance",
+    "scale_percent",
+    type=FiniteRange(0, 50),
+    metavar="PERCENT",
+    default=0,
+    show_default=True,
+    help="Try heights up to so much above and below the logged ones.",
 )
 @click.option("--jobs", type=click.IntRange(min=1), help="Frames at a time.  [default: all cores]")
 @seed_option
@@ -78,6 +95,8 @@ def locate_command(
     calibration: int | Path | None,
     search: str,
     window_m: float,
+    heading_deg: float | None,
+    scale_percent: float,
     jobs: int | None,
     seed: int,
     output: Path,
@@ -117,7 +136,15 @@ def locate_command(
             report("flight", 1, 1)
             scored, calibrating = _divided(recording.poses, calibration, None)
             recording = recording.scoring(scored)
-        run = run_flight(recording, calibrating, searches, report, jobs=jobs)
+        run = run_flight(
+            recording,
+            calibrating,
+            searches,
+            report,
+            heading_deg=heading_deg,
+            scale=scale_percent / 100,
+            jobs=jobs,
+        )
         files = write_run(run, output)
     data = summary(run) | {"files": [str(path) for path in files]}
     emit(data, f"{flight_markdown(run.result)}\nwritten to {output}", as_json=as_json)

@@ -23,9 +23,6 @@ PRECISION = 0.95
 WRONG_M = 60.0
 """A peak this far from the truth is a wrong one, whatever else it is."""
 
-TRACK_STD_M = 30.0
-"""A track's position is given while its filter believes in this deviation or less."""
-
 
 def fixes(
     grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | None], acceptance: Acceptance
@@ -76,8 +73,9 @@ def tracked(
 ) -> tuple[FrameFix, ...]:
     """The positions of a filter that takes all frames' peaks in turn.
 
-    Where the filter knows nothing, at its start or when it has lost the track, the position is that of the
-    frame alone, and no fix is given.
+    Its confidence in a position is the probability that it is right, off by less than `FAR_M`; from
+    `PRECISION` on the position is given as a fix. Where the filter knows nothing, before its
+    start or when it has lost the track, the position is that of the frame alone, and no fix is given.
     """
     offered = [
         [
@@ -89,13 +87,14 @@ def tracked(
         for at in located
     ]
     area = float(grid.valid.sum()) * grid.gsd_m**2 if half_width_m is None else (2 * half_width_m) ** 2
-    points = follow(offered, frame_times([pose.frame for pose in poses]), area_m2=area)
+    points = follow(offered, frame_times([pose.frame for pose in poses]), area_m2=area, right_m=FAR_M)
     track = []
     for pose, at, point in zip(poses, located, points, strict=True):
         seconds = at.seconds if at else 0.0
         if point:
             place = point.east_m, point.north_m
-            track.append(_fix(grid, pose, place, 1 / point.std_m, point.std_m <= TRACK_STD_M, seconds))
+            fixed = point.probability >= PRECISION
+            track.append(_fix(grid, pose, place, point.probability, fixed, seconds))
         elif at:
             track.append(_fix(grid, pose, at.places[0], 0.0, False, seconds))
         else:

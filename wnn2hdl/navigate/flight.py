@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
+import cv2
 import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from wnn2hdl.navigate.fixes import accepted, fixes, tracked
 from wnn2hdl.navigate.geometry import ground_patch
 from wnn2hdl.navigate.matching import Acceptance
 from wnn2hdl.navigate.methods import Method, compared_methods
-from wnn2hdl.navigate.navigator import Located, Navigator, Place, headings
+from wnn2hdl.navigate.navigator import Located, Navigator, Place, PoseTolerance
 from wnn2hdl.navigate.poses import Pose
 from wnn2hdl.navigate.recording import Recording
 from wnn2hdl.navigate.results import FlightResult, MethodResult, SearchKind, SearchResult
@@ -63,6 +64,8 @@ def run_flight(
     searches: Mapping[SearchKind, float | None],
     progress: Progress,
     *,
+    heading_deg: float | None = None,
+    scale: float = 0.0,
     jobs: int | None = None,
 ) -> FlightRun:
     """Locate all frames of a recording.
@@ -74,6 +77,8 @@ def run_flight(
         searches: by kind, half the side in metres of a window around the logged position; None for the whole
             map.
         progress: what to tell how far it is.
+        heading_deg: how far the logged headings may be off; if not told, what the calibration found, or 0.
+        scale: share by which the logged heights may be off.
         jobs: frames located at a time; as many as the machine has cores if not told.
 
     Raises:
@@ -89,10 +94,12 @@ def run_flight(
         return calibration.camera_at(pose.frame, flight) if calibration else recording.camera
 
     coarse = recording.world.resampled(GSD_M)
-    heading = calibration.heading_search_deg if calibration else 0.0
+    if heading_deg is None:
+        heading_deg = calibration.heading_search_deg if calibration else 0.0
+    tolerance = PoseTolerance(heading_deg, scale)
     if calibrating:
         sightings = (
-            _sighting(coarse, recording.read(pose), pose, camera_at(pose), heading) for pose in calibrating
+            _sighting(coarse, recording.read(pose), pose, camera_at(pose), tolerance) for pose in calibrating
         )
         weightless = learn(coarse.image, coarse.valid, sightings)
     else:
@@ -105,7 +112,7 @@ def run_flight(
             kind: None if half is None else (pose.latitude_deg, pose.longitude_deg, half)
             for kind, half in searches.items()
         }
-        return navigator.locate(recording.read(pose), pose, camera_at(pose), windows, heading)
+        return navigator.locate(recording.read(pose), pose, camera_at(pose), windows, tolerance)
 
     known = list(_in_parallel(locate, calibrating, jobs, "thresholds", progress))
     found = list(_in_parallel(locate, recording.poses, jobs, "frames", progress))
@@ -117,9 +124,8 @@ def run_flight(
             acceptance = accepted(grid, calibrating, [one[place] for one in known])
             located = [one[place] for one in found]
             rows.append(MethodResult(method.title, fixes(grid, recording.poses, located, acceptance)))
-            tracks.append(
-                MethodResult(f"{method.title}, track", tracked(grid, recording.poses, located, half))
-            )
+            track = tracked(grid, recording.poses, located, half)
+            tracks.append(MethodResult(f"{method.title}, track", track, tracked=True))
             acceptances[place] = acceptance
         searched.append(SearchResult(kind, half, (*rows, *tracks)))
     camera = calibration.cameras[0] if calibration else recording.camera
@@ -127,7 +133,7 @@ def run_flight(
         map_name=recording.map_name,
         ground_sample_distance_m=grid.gsd_m,
         focal_px=camera.fx,
-        tilt_deg=camera.tilt_deg,
+        tilts_deg=tuple(tilt for _, tilt in calibration.stretches) if calibration else (camera.tilt_deg,),
         calibrated_on=tuple(pose.frame for pose in calibrating),
         searches=tuple(searched),
     )
@@ -149,12 +155,10 @@ def calibrated(recording: Recording, calibrating: Sequence[Pose], progress: Prog
 
 
 def _sighting(
-    grid: MapGrid, frame: NDArray[np.uint8], pose: Pose, camera: Camera, heading_search_deg: float
+    grid: MapGrid, frame: NDArray[np.uint8], pose: Pose, camera: Camera, tolerance: PoseTolerance
 ) -> Sighting:
     """A calibration frame as the weightless edges learn from it."""
-    patches = tuple(
-        ground_patch(frame, turned, camera, grid.gsd_m) for turned in headings(pose, heading_search_deg)
-    )
+    patches = tuple(ground_patch(frame, tried, camera, grid.gsd_m) for tried in tolerance.poses(pose))
     row, column = (float(axis) for axis in grid.to_pixel(pose.latitude_deg, pose.longitude_deg))
     return Sighting(patches, row, column)
 
@@ -162,8 +166,16 @@ def _sighting(
 def _in_parallel(
     locate: Callable[[Pose], T], poses: Sequence[Pose], jobs: int | None, step: str, progress: Progress
 ) -> Iterator[T]:
-    """Results in order. Threads, since they share the map and spend their time in OpenCV and NumPy."""
+    """Results in order. Threads, since they share the map and spend their time in OpenCV and NumPy.
+
+    OpenCV gets no threads besides, whose time would be counted to no frame.
+    """
     workers = Parallel(n_jobs=jobs or os.cpu_count() or 1, prefer="threads", return_as="generator")
-    for done, result in enumerate(workers(delayed(locate)(pose) for pose in poses), start=1):
-        progress(step, done, len(poses))
-        yield result
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        for done, result in enumerate(workers(delayed(locate)(pose) for pose in poses), start=1):
+            progress(step, done, len(poses))
+            yield result
+    finally:
+        cv2.setNumThreads(threads)

@@ -21,13 +21,13 @@ Axes and signs, everywhere in this module:
 
 import math
 from dataclasses import dataclass, replace
-from typing import Self
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
+from wnn2hdl.ir.window import SIDE
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.poses import Pose
 
@@ -55,26 +55,6 @@ class Patch:
     nadir_row: float
     nadir_col: float
     gsd_m: float
-
-    def cropped(self, top: int, left: int, rows: int, columns: int) -> Self:
-        """A rectangle of the patch, which must lie inside it."""
-        part = np.s_[top : top + rows, left : left + columns]
-        return replace(
-            self,
-            image=self.image[part],
-            valid=self.valid[part],
-            nadir_row=self.nadir_row - top,
-            nadir_col=self.nadir_col - left,
-        )
-
-    def largest_square(self) -> Self:
-        """The largest square of odd side with nothing but valid pixels."""
-        inside = np.pad(self.valid, 1).astype(np.uint8)
-        # In the chessboard metric the distance to the nearest invalid pixel is half the square around it.
-        reach = cv2.distanceTransform(inside, cv2.DIST_C, 3)[1:-1, 1:-1]
-        row, column = np.unravel_index(np.argmax(reach), reach.shape)
-        half = int(reach[row, column]) - 1
-        return self.cropped(int(row) - half, int(column) - half, 2 * half + 1, 2 * half + 1)
 
 
 def camera_to_ground(pose: Pose, camera: Camera) -> NDArray[np.float64]:
@@ -126,7 +106,7 @@ def ground_patch(frame: NDArray[np.uint8], pose: Pose, camera: Camera, gsd_m: fl
         A patch around all the frame shows, up to `MAX_OBLIQUE_DEG` from straight down.
 
     Raises:
-        InputError: the frame shows no ground, or has another shape than the camera's.
+        InputError: the frame shows no ground or too little, or has another shape than the camera's.
     """
     camera = camera.scaled(frame.shape[1], frame.shape[0])
     rotation = np.asarray(_GROUND_TO_PATCH @ camera_to_ground(pose, camera))
@@ -152,7 +132,13 @@ def _laid(
     box: tuple[float, float, float, float],
 ) -> Patch:
     west, north, east, south = box
-    columns, rows = (max(1, math.ceil(extent / gsd_m)) for extent in (east - west, south - north))
+    columns, rows = (math.ceil(extent / gsd_m) for extent in (east - west, south - north))
+    if min(columns, rows) < SIDE:
+        raise InputError(
+            f"a frame shows less than {SIDE}x{SIDE} pixels of ground to find edges in",
+            value=f"{columns}x{rows} of {gsd_m:g} m",
+            mend="check the focal length, the heights and the map's ground sample distance",
+        )
     middle = ((west + east) / 2, (north + south) / 2)
     focal = height_m / gsd_m
     target = np.array([[focal, 0, (columns - 1) / 2], [0, focal, (rows - 1) / 2], [0, 0, 1]])

@@ -26,8 +26,42 @@ T = TypeVar("T")
 HEADING_STEP_DEG = 6.0
 """Between headings that are tried: a match survives half of it."""
 
+SCALE_STEP = 0.04
+"""Between heights that are tried: half of it moves an edge 60 m off the frame's middle by 1.2 m."""
+
 APART_M = 20.0
 """Peaks are at least so far apart in rows or columns, metres: else they are one peak's two sides."""
+
+
+@dataclass(frozen=True)
+class PoseTolerance:
+    """How far the log may be off; the poses between are tried.
+
+    Attributes:
+        heading_deg: headings up to so much beside the logged one, degrees.
+        scale: heights up to this share above and below the logged one, which an error of the scale comes to.
+    """
+
+    heading_deg: float = 0.0
+    scale: float = 0.0
+
+    def poses(self, pose: Pose) -> tuple[Pose, ...]:
+        """The poses to try for a logged one, this among them."""
+        return tuple(
+            replace(
+                pose,
+                yaw_deg=pose.yaw_deg + turn,
+                height_m=pose.height_m * (1 + growth),
+            )
+            for turn in _steps(self.heading_deg, HEADING_STEP_DEG)
+            for growth in _steps(self.scale, SCALE_STEP)
+        )
+
+
+def _steps(most: float, step: float) -> list[float]:
+    """Multiples of a step that reach ``most`` on both sides of 0."""
+    count = math.ceil(most / step - 1e-9)
+    return [number * step for number in range(-count, count + 1)]
 
 
 @dataclass(frozen=True)
@@ -36,14 +70,17 @@ class Located:
 
     Attributes:
         match: of the point below the UAV, in whole pixels of the method's grid; its peaks are the best over
-            all headings that were tried.
+            all poses that were tried.
         places: metres east and north of the map's middle, of each peak.
-        seconds: processor time for laying the frame out, describing and searching, over all headings.
+        seconds: processor time for laying the frame out, describing and searching, over all poses.
     """
 
     match: Match
     places: tuple[tuple[float, float], ...]
     seconds: float
+
+
+EXACT = PoseTolerance()
 
 
 class Navigator:
@@ -73,7 +110,7 @@ class Navigator:
         pose: Pose,
         camera: Camera,
         windows: Mapping[SearchKind, tuple[float, float, float] | None],
-        heading_search_deg: float = 0.0,
+        tolerance: PoseTolerance = EXACT,
     ) -> dict[Place, Located | None]:
         """Search for a frame.
 
@@ -83,22 +120,22 @@ class Navigator:
             camera: that took it.
             windows: for each search by kind, latitude, longitude and half side in metres of the square in
                 which the UAV is; None for the whole map.
-            heading_search_deg: headings up to this much beside the pose's are tried.
+            tolerance: how far the pose may be off.
 
         Returns:
-            for each search and method, where the UAV is; None if the frame has too little in common with what
-            is searched of the map.
+            for each search and method, where the UAV is; None if the frame shows nothing to match, or has too
+            little in common with what is searched of the map.
         """
         found: dict[Place, list[_Sight]] = {
             (search, method.key): [] for search in windows for method in self._methods
         }
         seconds = dict.fromkeys(found, 0.0)
-        for turned in headings(pose, heading_search_deg):
+        for tried in tolerance.poses(pose):
             laid = {
                 (perspective, gsd_m): _timed(
                     ground_patch if perspective else rotated_patch,
                     frame,
-                    turned,
+                    tried,
                     camera,
                     self._grids[gsd_m].gsd_m,
                 )
@@ -114,21 +151,15 @@ class Navigator:
                     window = None if area is None else _window(grid, patch, area)
                     match, searching = _timed(index.search, picture, mask, "ncc", window, exclusion=apart)
                     seconds[place] += laying + describing + searching
-                    if match:
+                    # A frame or a map without any structure correlates with nothing.
+                    if match and match.score > 0:
                         found[place].append(_Sight(match, patch, grid))
         return {place: _best(sights, seconds[place]) if sights else None for place, sights in found.items()}
 
 
-def headings(pose: Pose, search_deg: float) -> tuple[Pose, ...]:
-    """The pose with every heading to try: the logged one, and others up to so many degrees beside it."""
-    steps = math.ceil(search_deg / HEADING_STEP_DEG)
-    turns = (step * HEADING_STEP_DEG for step in range(-steps, steps + 1))
-    return tuple(replace(pose, yaw_deg=pose.yaw_deg + turn) for turn in turns)
-
-
 @dataclass(frozen=True)
 class _Sight:
-    """A match at one heading."""
+    """A match at one pose."""
 
     match: Match
     patch: Patch
@@ -141,7 +172,7 @@ def _window(grid: MapGrid, patch: Patch, area: tuple[float, float, float]) -> Wi
 
 
 def _best(sights: Sequence[_Sight], seconds: float) -> Located:
-    """One match of several headings': the best peaks of all, against the scores of all."""
+    """One match of several poses': the best peaks of all, against the scores of all."""
     grid = sights[0].grid
     peaks = [
         (peak.score, peak.row + sight.patch.nadir_row, peak.col + sight.patch.nadir_col)

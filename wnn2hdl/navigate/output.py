@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.ir.files import make_folder, write_json, write_text
-from wnn2hdl.navigate.results import FAR_M, FlightResult, MethodResult, SearchResult
+from wnn2hdl.navigate.results import FAR_M, FIGURES, FlightResult, MethodResult, SearchResult
 
 TABLE_VERSION = 1
 """Of the form of `flight.json`; it rises when a key changes its meaning or goes away."""
@@ -38,20 +38,6 @@ PUBLISHED = (
     PublishedMethod("rotation + Canny", 50.01, 25.67, 660.44, 2.86, 97.14),
     PublishedMethod("perspective + weightless edge filter", 44.94, 17.50, 305.89, 0.0, 100.0),
 )
-
-_FIGURES = (
-    "mean_m",
-    "std_m",
-    "variance_m2",
-    "median_m",
-    "false_positive_percent",
-    "true_positive_percent",
-    "fixed_percent",
-    "fixed_mean_m",
-    "fixed_true_percent",
-    "mean_seconds",
-)
-"""Properties of `MethodResult` that tables hold."""
 
 _FRAME_COLUMNS = (
     "search",
@@ -114,7 +100,7 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
         "version": TABLE_VERSION,
         "map": result.map_name,
         "ground_sample_distance_m": result.ground_sample_distance_m,
-        "camera": {"focal_px": result.focal_px, "tilt_deg": result.tilt_deg},
+        "camera": {"focal_px": result.focal_px, "tilts_deg": list(result.tilts_deg)},
         "calibrated_on": list(result.calibrated_on),
         "largest_geodesic_difference_m": result.largest_geodesic_difference_m,
         "searches": [
@@ -125,7 +111,7 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
                 "blind_mean_m": search.blind_mean_m,
                 "methods": [
                     {"name": method.name}
-                    | {figure: getattr(method, figure) for figure in _FIGURES}
+                    | {figure: getattr(method, figure) for figure in FIGURES}
                     | {"frames": [_finite(asdict(fix)) for fix in method.fixes]}
                     for method in search.methods
                 ],
@@ -139,9 +125,9 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
 def table_csv(result: FlightResult) -> str:
     """A line for each search and method, with all figures; empty where there is none."""
     return _csv(
-        ("search", "method", *_FIGURES),
+        ("search", "method", *FIGURES),
         (
-            (search.key, method.name, *(getattr(method, figure) for figure in _FIGURES))
+            (search.key, method.name, *(getattr(method, figure) for figure in FIGURES))
             for search in result.searches
             for method in search.methods
         ),
@@ -199,11 +185,12 @@ def flight_markdown(result: FlightResult) -> str:
         if result.calibrated_on
         else "given"
     )
+    tilts = ", then ".join(f"{tilt:.2f}" for tilt in result.tilts_deg)
     difference = result.largest_geodesic_difference_m
     sections = [
         "# Positions from edges",
         f"Map `{result.map_name}` at {result.ground_sample_distance_m:g} m a pixel; camera {fitted}: focal "
-        f"length {result.focal_px:.1f} px, forward tilt {result.tilt_deg:.2f} degrees.",
+        f"length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
         _STATISTICS,
         f"They differ from geodesic distances by at most {difference:.2f} m."
         if difference is not None

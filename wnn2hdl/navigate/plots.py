@@ -59,11 +59,14 @@ def plot_errors(result: FlightResult, path: Path) -> tuple[Path, Path]:
 def _draw_errors(axes: Axes, search: SearchResult) -> None:
     far = 1.1 * FAR_M
     dots: list[tuple[float, float]] = []
+    alone = sum(not method.tracked for method in search.methods)
     for place, method in enumerate(search.methods):
         if method.mean_m is None or method.std_m is None:
             continue
-        colour = COLOURS[place % len(COLOURS)]
-        axes.barh(place, method.mean_m, height=0.6, color=colour, edgecolor="black", linewidth=0.6)
+        # A track has the colour of the method it is made of.
+        colour = COLOURS[(place - alone if method.tracked else place) % len(COLOURS)]
+        hatch = "//" if method.tracked else ""
+        axes.barh(place, method.mean_m, 0.6, color=colour, hatch=hatch, edgecolor="black", linewidth=0.6)
         spread = [[min(method.std_m, method.mean_m)], [method.std_m]]
         axes.errorbar(method.mean_m, place, xerr=spread, color="black", capsize=4, linewidth=1.2)
         # Errors of frames lie in the order of the flight, from the bar's top to its foot.

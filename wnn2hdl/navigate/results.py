@@ -10,6 +10,20 @@ SearchKind = Literal["window", "map"]
 FAR_M = 100.0
 """From this great-circle error on, in metres, a position counts as a false positive, as in the reference."""
 
+FIGURES = (
+    "mean_m",
+    "std_m",
+    "variance_m2",
+    "median_m",
+    "false_positive_percent",
+    "true_positive_percent",
+    "fixed_percent",
+    "fixed_mean_m",
+    "fixed_true_percent",
+    "mean_seconds",
+)
+"""Properties of `MethodResult` in tables and JSON; those of ``fixed_…`` are of the fixes that are given."""
+
 
 @dataclass(frozen=True)
 class FrameFix:
@@ -52,10 +66,12 @@ class MethodResult:
     Attributes:
         name: as the tables show it, "perspective + Canny".
         fixes: one a frame, in the order of the flight.
+        tracked: whether a filter over the track made them of the method's own.
     """
 
     name: str
     fixes: tuple[FrameFix, ...]
+    tracked: bool = False
 
     @property
     def errors_m(self) -> tuple[float, ...]:
@@ -167,7 +183,7 @@ class FlightResult:
         map_name: file name of the map.
         ground_sample_distance_m: metres a pixel at which frames and map were compared.
         focal_px: focal length in pixels of the frames as given or fitted.
-        tilt_deg: the camera's forward tilt as given or fitted, degrees.
+        tilts_deg: the camera's forward tilt as given, or as fitted for each stretch of the flight, degrees.
         calibrated_on: frames on which unknowns of the camera were fitted; empty if it was given.
         searches: the same methods, searched in one or two ways.
     """
@@ -175,7 +191,7 @@ class FlightResult:
     map_name: str
     ground_sample_distance_m: float
     focal_px: float
-    tilt_deg: float
+    tilts_deg: tuple[float, ...]
     calibrated_on: tuple[str, ...]
     searches: tuple[SearchResult, ...]
 

@@ -9,30 +9,14 @@ from wnn2hdl.ir.files import write_json
 from wnn2hdl.navigate.flight import FlightRun
 from wnn2hdl.navigate.output import write_results
 from wnn2hdl.navigate.plots import plot_errors, plot_tracks
-from wnn2hdl.navigate.results import MethodResult, SearchResult
-
-FIGURES = (
-    "mean_m",
-    "std_m",
-    "variance_m2",
-    "median_m",
-    "false_positive_percent",
-    "true_positive_percent",
-    "fixed_percent",
-    "fixed_mean_m",
-    "fixed_true_percent",
-    "mean_seconds",
-)
-"""Of each method; errors are of all frames as the reference counts, those of ``fixed_…`` of given fixes.
-
-``confidence_threshold`` is null where no fix is ever given, and for tracks, whose filter judges itself.
-"""
+from wnn2hdl.navigate.results import FIGURES, MethodResult, SearchResult
 
 
 def summary(run: FlightRun) -> dict[str, Any]:
     """What ``locate --json`` prints.
 
-    ``methods`` are those of the window's search, or of the whole map's if nothing else was searched.
+    ``methods`` are those of the window's search, or of the whole map's if nothing else was searched. Of each,
+    ``confidence_threshold`` is null where no fix is ever given, and for tracks, whose filter judges itself.
     """
     searches = {search.kind: _search(run, search) for search in run.result.searches}
     first = searches.get("window") or searches["map"]
@@ -58,7 +42,7 @@ def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
     """
     files = [*write_results(folder, run.result), *plot_errors(run.result, folder / "errors")]
     for search in run.result.searches:
-        raw = replace(search, methods=search.methods[: len(run.methods)])
+        raw = replace(search, methods=tuple(method for method in search.methods if not method.tracked))
         files += plot_tracks(
             raw, run.grid.image, run.grid.to_pixel, run.grid.gsd_m, folder / f"tracks_{search.key}"
         )

@@ -17,8 +17,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from scipy.special import chndtr
 
 from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.navigate.results import FAR_M
 
 GATE = 13.8
 """Squared Mahalanobis distance beyond which a fix does not belong to a track: 1 in 1000 right ones does."""
@@ -55,13 +57,16 @@ class TrackPoint:
     Attributes:
         east_m: in local metres.
         north_m: in local metres.
-        std_m: standard deviation of the position, root mean square of the two directions.
+        std_m: standard deviation of the position, root mean square of the two directions, if the likeliest
+            hypothesis is the right one.
+        probability: that the UAV is less than `follow`'s ``right_m`` from here, over all hypotheses.
         taken: which of the frame's fixes was taken; None if none was.
     """
 
     east_m: float
     north_m: float
     std_m: float
+    probability: float
     taken: int | None
 
 
@@ -80,6 +85,7 @@ def follow(
     *,
     acceleration_m: float = 15.0,
     area_m2: float = 1e6,
+    right_m: float = FAR_M,
 ) -> list[TrackPoint | None]:
     """Filter the fixes of a flight.
 
@@ -90,6 +96,7 @@ def follow(
         acceleration_m: standard deviation of the acceleration, metres a squared unit of time. The default
             is that of two real flights whose unit is the number in a frame's name (9 and 18, measured).
         area_m2: area over which wrong fixes scatter: that of the map, or of the search window.
+        right_m: how near to the truth a position must be to count as right, metres.
 
     Returns:
         for each frame the position of the likeliest hypothesis; None before the first fix, and
@@ -120,7 +127,7 @@ def follow(
         ]
         branches.sort(key=lambda branch: -branch.weight)
         hypotheses = branches[:HYPOTHESES]
-        points.append(_point(hypotheses[0]))
+        points.append(_point(hypotheses, right_m))
     return points
 
 
@@ -188,9 +195,25 @@ def _moved(hypothesis: _Hypothesis, elapsed: float, acceleration_m: float, area_
     return replace(hypothesis, kalman=None) if lost else hypothesis
 
 
-def _point(hypothesis: _Hypothesis) -> TrackPoint | None:
-    if hypothesis.kalman is None:
+def _point(hypotheses: Sequence[_Hypothesis], right_m: float) -> TrackPoint | None:
+    """The likeliest hypothesis, which is the first."""
+    best = hypotheses[0]
+    if best.kalman is None:
         return None
-    state, covariance = hypothesis.kalman.x, hypothesis.kalman.P
-    spread = math.sqrt((covariance[0, 0] + covariance[2, 2]) / 2)
-    return TrackPoint(float(state[0, 0]), float(state[2, 0]), spread, hypothesis.taken)
+    east, north, spread = _position(best.kalman)
+    weights = np.exp([hypothesis.weight - best.weight for hypothesis in hypotheses])
+    near = np.zeros(len(hypotheses))
+    for number, kalman in enumerate(hypothesis.kalman for hypothesis in hypotheses):
+        # One that knows no position does not speak for this one.
+        if kalman is not None:
+            other_east, other_north, std = _position(kalman)
+            apart = math.hypot(other_east - east, other_north - north)
+            # The squared distance of a circular normal distribution from a point beside its middle.
+            near[number] = chndtr((right_m / std) ** 2, 2, (apart / std) ** 2)
+    return TrackPoint(east, north, spread, float(near @ weights / weights.sum()), best.taken)
+
+
+def _position(kalman: Any) -> tuple[float, float, float]:
+    """East, north, and the root mean square of their two standard deviations."""
+    state, covariance = kalman.x, kalman.P
+    return float(state[0, 0]), float(state[2, 0]), math.sqrt((covariance[0, 0] + covariance[2, 2]) / 2)

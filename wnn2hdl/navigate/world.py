@@ -1,5 +1,6 @@
 """The map: a georeferenced picture, and the north-up metric grid that matching happens on."""
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.ir.window import SIDE
 
 if TYPE_CHECKING:
     from affine import Affine
@@ -22,6 +24,9 @@ _WARP_TOLERANCE_PX = 0.01
 
 _VOID_SHARE = 0.001
 """A plain black or white region at the map's edge is taken for no picture if it is this part of the map."""
+
+_MOST_PIXELS = 1 << 30
+"""Of a grid: its picture takes 3 GB then."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +114,11 @@ class WorldMap:
         """
         rasterio = _rasterio()
         try:
-            with rasterio.open(path) as dataset:
+            # What rasterio would warn of, a missing georeference, is refused.
+            warnings_off = warnings.catch_warnings(
+                action="ignore", category=rasterio.errors.NotGeoreferencedWarning
+            )
+            with warnings_off, rasterio.open(path) as dataset:
                 if dataset.crs is None or dataset.transform.is_identity:
                     raise InputError(
                         "the map has no georeference",
@@ -124,7 +133,7 @@ class WorldMap:
                     )
                 return cls(path, dataset.shape, dataset.transform, dataset.crs)
         except rasterio.errors.RasterioError as error:
-            raise InputError("cannot read the map", value=f"{path} ({error})") from error
+            raise _unreadable(path, error) from error
 
     @classmethod
     def of_array(cls, image: NDArray[np.uint8], transform: "Affine", crs: Any) -> Self:
@@ -150,7 +159,16 @@ class WorldMap:
 
     @cached_property
     def _geographic(self) -> "Transformer":
-        return _transformer(self.crs.to_wkt())
+        from pyproj.exceptions import ProjError
+
+        try:
+            return _transformer(self.crs.to_wkt())
+        except ProjError as error:
+            raise InputError(
+                "the map's coordinate system tells no latitudes and longitudes",
+                value=self.crs.to_string(),
+                mend="give a map in a geographic or projected coordinate system, as UTM",
+            ) from error
 
     def to_pixel(
         self, latitude: ArrayLike, longitude: ArrayLike
@@ -170,13 +188,25 @@ class WorldMap:
 
     @cached_property
     def gsd_m(self) -> float:
-        """Ground sample distance in the middle, metres: the square root of a pixel's area there."""
+        """Ground sample distance in the middle, metres: the square root of a pixel's area there.
+
+        Raises:
+            InputError: the pixels have no area, or are not on the earth.
+        """
         rows, columns = (extent / 2 - 0.5 for extent in self.shape)
         corners = self.to_geographic(rows + np.array([0, 0, 1]), columns + np.array([0, 1, 0]))
+        self._check_on_earth(corners)
         latitude, longitude = (float(axis[0]) for axis in corners)
         east, north = _transformer(_local_crs(latitude, longitude)).transform(corners[1], corners[0])
         across, down = ((east[i], north[i]) for i in (1, 2))
-        return float(np.sqrt(abs(across[0] * down[1] - across[1] * down[0])))
+        area = abs(across[0] * down[1] - across[1] * down[0])
+        if self.transform.is_degenerate or not area:
+            raise InputError(
+                "the map's pixels have no size on the ground",
+                value=tuple(self.transform)[:6],
+                mend="give it a transform that can be inverted",
+            )
+        return float(np.sqrt(area))
 
     def resampled(self, gsd_m: float | None = None) -> MapGrid:
         """Lay the map on a north-up metric grid.
@@ -187,17 +217,33 @@ class WorldMap:
 
         Args:
             gsd_m: metres a pixel; the map's own if not given.
+
+        Raises:
+            InputError: the map cannot be read, lies nowhere, or is too small or too large for such a grid.
         """
         rasterio = _rasterio()
         from rasterio.enums import Resampling
         from rasterio.warp import reproject
 
-        gsd_m = gsd_m or self.gsd_m
+        own_m = self.gsd_m
+        gsd_m = gsd_m or own_m
         middle = self.to_geographic((self.shape[0] - 1) / 2, (self.shape[1] - 1) / 2)
         latitude, longitude = (float(axis) for axis in middle)
         local = _local_crs(latitude, longitude)
         west, south, east, north = self._extent(local)
-        columns, rows = (max(1, int((high - low) / gsd_m)) for low, high in ((west, east), (south, north)))
+        columns, rows = (int((high - low) / gsd_m) for low, high in ((west, east), (south, north)))
+        if min(rows, columns) < SIDE:
+            raise InputError(
+                f"the map has less than {SIDE}x{SIDE} pixels to find edges in",
+                value=f"{columns}x{rows} of {gsd_m:g} m",
+                mend="give a larger map",
+            )
+        if rows * columns > _MOST_PIXELS:
+            raise InputError(
+                "the map is too large to be laid on a grid",
+                value=f"{columns}x{rows} pixels of {gsd_m:g} m",
+                mend="cut the country that was flown over out of it",
+            )
         transform = rasterio.Affine(gsd_m, 0, west, 0, -gsd_m, north)
         picture, shown = self._pixels()
         image = np.zeros((3, rows, columns), dtype=np.uint8)
@@ -237,21 +283,38 @@ class WorldMap:
             ]
         )
         latitude, longitude = self.to_geographic(outline[:, 0], outline[:, 1])
+        self._check_on_earth((latitude, longitude))
         east, north = _transformer(local).transform(longitude, latitude)
         return float(min(east)), float(min(north)), float(max(east)), float(max(north))
+
+    def _check_on_earth(self, positions: tuple[NDArray[np.float64], NDArray[np.float64]]) -> None:
+        if not np.isfinite(positions).all():
+            raise InputError(
+                "the map is not on the earth",
+                value=f"{self.crs.to_string()}, {tuple(self.transform)[:6]}",
+                mend="correct its coordinate system or its transform",
+            )
 
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """The picture, uint8 ``[rows, columns, 3]``, and which of its pixels it shows."""
         if isinstance(self.source, Path):
-            with _rasterio().open(self.source) as dataset:
-                bands = [1, 2, 3] if dataset.count >= 3 else [1, 1, 1]
-                picture = np.ascontiguousarray(np.moveaxis(dataset.read(bands), 0, -1))
-                shown = dataset.dataset_mask() > 0
+            rasterio = _rasterio()
+            try:
+                with rasterio.open(self.source) as dataset:
+                    bands = [1, 2, 3] if dataset.count >= 3 else [1, 1, 1]
+                    picture = np.ascontiguousarray(np.moveaxis(dataset.read(bands), 0, -1))
+                    shown = dataset.dataset_mask() > 0
+            except rasterio.errors.RasterioError as error:
+                raise _unreadable(self.source, error.__cause__ or error) from error
         else:
             picture, shown = self.source, np.ones(self.shape, dtype=np.bool_)
         for plain in (0, 255):
             shown &= ~_void(picture, plain)
         return picture, shown
+
+
+def _unreadable(path: Path, error: BaseException) -> InputError:
+    return InputError("cannot read the map", value=f"{path} ({error})")
 
 
 def _applied(

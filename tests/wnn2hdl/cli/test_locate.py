@@ -97,6 +97,7 @@ def test_the_embedded_flight_needs_no_files(
         (["--calibrate", "all"], "neither a count nor a CSV"),
         (["--calibrate", "9"], "too few frames are left to score: 9 of 10 calibrate"),
         (["--window", "0"], "--window"),
+        (["--window", "nan"], "no finite number"),
         (["--search", "around"], "--search"),
     ],
 )

@@ -86,3 +86,25 @@ def test_a_track_overrules_a_stray_match() -> None:
     assert track[8].error_m < 40
     alone = fixes(GRID, poses, matches, Acceptance(0, 1, 1))
     assert alone[6].error_m == pytest.approx(np.hypot(420, 300), rel=0.01)
+
+
+def test_a_track_through_doubtful_matches_is_no_fix_until_they_agree() -> None:
+    poses = [pose(20 * i, 0, i) for i in range(9)]
+    doubtful: list[Located | None] = [
+        located((20.0 * i, 0.0), (300.0 - 90 * (i % 5), 300.0 * (-1) ** i), heights=(4.5, 4.2))
+        for i in range(9)
+    ]
+    track = tracked(GRID, poses, doubtful, None)
+    assert not track[0].fixed
+    assert track[8].fixed
+    assert 0 <= track[0].confidence < track[8].confidence <= 1
+
+
+def test_a_track_that_starts_at_a_wrong_match_is_no_fix() -> None:
+    rng = np.random.default_rng(0)
+    poses = [pose(0, 0, 9 * i) for i in range(12)]
+    strays: list[Located | None] = [
+        located(*map(tuple, rng.uniform(-480, 480, (3, 2))), heights=(4.4, 4.2, 4.1)) for _ in poses
+    ]
+    for half_width_m in (None, 95.0):
+        assert not any(fix.fixed for fix in tracked(GRID, poses, strays, half_width_m))

@@ -1,12 +1,14 @@
 """Frames of a rendered flight, found on its map."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.methods import compared_methods
-from wnn2hdl.navigate.navigator import HEADING_STEP_DEG, Located, Navigator, headings
+from wnn2hdl.navigate.navigator import HEADING_STEP_DEG, SCALE_STEP, Located, Navigator, PoseTolerance
 from wnn2hdl.navigate.poses import Pose
 from wnn2hdl.navigate.weightless import GSD_M, by_rule
 from wnn2hdl.navigate.world import MapGrid, WorldMap
@@ -79,7 +81,7 @@ def test_a_wrong_heading_is_searched_for(
 ) -> None:
     frame, pose, camera = seen(flight, yaw_error=17)
     window = (pose.latitude_deg, pose.longitude_deg, 60.0)
-    found = navigator.locate(frame, pose, camera, {"window": window}, heading_search_deg=18)
+    found = navigator.locate(frame, pose, camera, {"window": window}, PoseTolerance(heading_deg=18))
     for method in ("perspective-weightless", "grey"):
         assert miss_m(grids[None], pose, found["window", method]) < 4
 
@@ -94,7 +96,34 @@ def test_a_frame_beside_the_map_is_not_located(
     assert set(found.values()) == {None}
 
 
-def test_headings_to_try() -> None:
-    pose = Pose("a", 0, 0, 1, 100)
-    assert headings(pose, 0) == (pose,)
-    assert [turned.yaw_deg for turned in headings(pose, HEADING_STEP_DEG + 1)] == [88, 94, 100, 106, 112]
+def test_a_frame_that_shows_nothing_is_not_located(flight: Flight, navigator: Navigator) -> None:
+    _, pose, camera = seen(flight)
+    blank = np.full((180, 320, 3), 90, np.uint8)
+    window = (pose.latitude_deg, pose.longitude_deg, 60.0)
+    found = navigator.locate(blank, pose, camera, {"window": window, "map": None})
+    assert set(found.values()) == {None}
+
+
+def test_a_wrong_height_is_searched_for(
+    flight: Flight, grids: dict[float | None, MapGrid], navigator: Navigator
+) -> None:
+    frame, pose, camera = seen(flight)
+    high = replace(pose, height_m=pose.height_m * 1.15)
+    window = (pose.latitude_deg, pose.longitude_deg, 60.0)
+    scores = []
+    for tolerance in (PoseTolerance(), PoseTolerance(scale=0.15)):
+        located = navigator.locate(frame, high, camera, {"window": window}, tolerance)["window", "grey"]
+        assert located is not None
+        scores.append(located.match.score)
+    assert scores[1] > scores[0] + 0.1
+    assert miss_m(grids[None], pose, located) < 4
+
+
+def test_poses_to_try() -> None:
+    pose = Pose("a", 0, 0, 50, 100)
+    assert PoseTolerance().poses(pose) == (pose,)
+    turned = PoseTolerance(heading_deg=HEADING_STEP_DEG + 1).poses(pose)
+    assert [one.yaw_deg for one in turned] == [88, 94, 100, 106, 112]
+    scaled = PoseTolerance(scale=SCALE_STEP).poses(pose)
+    assert [one.height_m for one in scaled] == [48, 50, 52]
+    assert len(PoseTolerance(2 * HEADING_STEP_DEG, 3 * SCALE_STEP).poses(pose)) == 5 * 7

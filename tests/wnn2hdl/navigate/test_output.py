@@ -42,7 +42,7 @@ RESULT = FlightResult(
     "map.tif",
     0.5,
     751.25,
-    9.5,
+    (9.5, 0.75),
     ("frame_8.jpg", "frame_9.jpg"),
     (SearchResult("window", 95.0, (CANNY, EDGES)), SearchResult("map", None, (EDGES,))),
 )
@@ -62,7 +62,10 @@ def test_markdown_has_a_row_for_each_method_and_the_published_ones_beside() -> N
 def test_markdown_says_what_window_camera_and_distance_mean() -> None:
     page = flight_markdown(RESULT)
     assert "No error can exceed 134 m here, and a blind guess would be 73 m off on average." in page
-    assert "fitted on 2 frames that are not scored: focal length 751.2 px, forward tilt 9.50 degrees" in page
+    assert (
+        "fitted on 2 frames that are not scored: focal length 751.2 px, forward tilt 9.50, then 0.75 degrees"
+        in page
+    )
     assert "the population's" in page
     assert "at most 0.25 m" in page
     assert "searched over the whole map" in page.lower()
@@ -70,7 +73,7 @@ def test_markdown_says_what_window_camera_and_distance_mean() -> None:
 
 def test_a_method_without_positions_shows_no_figures() -> None:
     nothing = MethodResult("Sobel", (fix(1, None),))
-    page = flight_markdown(FlightResult("m", 0.5, 1, 0, (), (SearchResult("map", None, (nothing,)),)))
+    page = flight_markdown(FlightResult("m", 0.5, 1, (0.0,), (), (SearchResult("map", None, (nothing,)),)))
     assert "| Sobel | n/a | n/a | n/a | n/a | n/a |" in page
     assert "camera given" in page
 

@@ -45,7 +45,7 @@ def method(name: str, off: float, *, missing: int = -1) -> MethodResult:
 
 METHODS = (method("perspective + Canny", 5, missing=3), method("rotation + Canny", -9))
 WINDOW, WHOLE = SearchResult("window", 95.0, METHODS), SearchResult("map", None, METHODS)
-FLIGHT = FlightResult("map.tif", 0.5, 750, 10, (), (WINDOW, WHOLE))
+FLIGHT = FlightResult("map.tif", 0.5, 750, (10.0,), (), (WINDOW, WHOLE))
 
 
 def pixels(path: Path) -> NDArray[np.uint8]:

@@ -78,7 +78,7 @@ def test_the_whole_map_has_no_limit() -> None:
 def test_the_largest_difference_to_the_geodesic_is_taken_over_everything() -> None:
     near = SearchResult("window", 95, (method(fix(10, geodesic_m=10.5), fix(None, geodesic_m=None)),))
     far = SearchResult("map", None, (method(fix(900, geodesic_m=896)),))
-    flight = FlightResult("map.tif", 0.5, 750, 10, (), (near, far))
+    flight = FlightResult("map.tif", 0.5, 750, (10.0,), (), (near, far))
     assert flight.largest_geodesic_difference_m is not None
     assert math.isclose(flight.largest_geodesic_difference_m, 4)
-    assert FlightResult("map.tif", 0.5, 750, 10, (), ()).largest_geodesic_difference_m is None
+    assert FlightResult("map.tif", 0.5, 750, (10.0,), (), ()).largest_geodesic_difference_m is None

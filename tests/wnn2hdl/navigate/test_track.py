@@ -75,6 +75,36 @@ def test_the_past_does_not_change_with_the_future() -> None:
     assert follow(frames[:25], area_m2=AREA) == whole[:25]
 
 
+def test_the_probability_tells_how_often_the_track_is_right() -> None:
+    sure, right = [], []
+    for seed in range(12):
+        path = flight(seed, 30)
+        points = follow(searches(path, seed, wrong=0.5), area_m2=AREA)
+        for point, place in zip(points, path, strict=True):
+            if point is not None:
+                sure.append(point.probability)
+                right.append(np.hypot(*(place - (point.east_m, point.north_m))) < 100)
+    given, wrong = np.array(sure) >= 0.95, ~np.array(right)
+    assert wrong.any()
+    assert given.mean() > 0.5
+    assert wrong[given].mean() < 0.05
+    assert np.mean(sure) == pytest.approx(np.mean(right), abs=0.1)
+
+
+def test_a_first_fix_is_worth_its_weight() -> None:
+    for weight in (0.6, 0.9):
+        point = follow([[Fix(0.0, 0.0, 5.0, weight)]], area_m2=AREA)[0]
+        assert point is not None
+        assert point.probability == pytest.approx(weight)
+
+
+def test_a_vague_position_is_seldom_right() -> None:
+    """A circular normal distribution has 1 - exp(-1/2) of its weight within one deviation."""
+    point = follow([[Fix(0.0, 0.0, 30.0, 1.0)]], right_m=30.0, area_m2=1e7)[0]
+    assert point is not None
+    assert point.probability == pytest.approx(0.99 * (1 - np.exp(-0.5)), abs=0.01)
+
+
 def test_frames_without_fixes_are_bridged() -> None:
     path = flight(2, 20)
     frames = [[fix(place, 5.0, 0.9)] for place in path]

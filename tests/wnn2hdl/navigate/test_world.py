@@ -8,6 +8,7 @@ import pytest
 import rasterio
 from affine import Affine
 from numpy.typing import NDArray
+from PIL import Image
 from pyproj import Geod
 
 from wnn2hdl.errors import InputError
@@ -101,18 +102,40 @@ def test_no_data_is_no_map(tmp_path: Path) -> None:
     assert WorldMap.read(path).resampled().valid.mean() == pytest.approx(300 / 400, abs=0.03)
 
 
-@pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_bad_maps_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot read the map"):
         WorldMap.read(tmp_path / "none.tif")
     (tmp_path / "text.tif").write_text("no map")
     with pytest.raises(InputError, match="cannot read the map"):
         WorldMap.read(tmp_path / "text.tif")
+    Image.fromarray(dots()).save(tmp_path / "plain.tif")
     with pytest.raises(InputError, match="no georeference"):
-        WorldMap.read(written(tmp_path / "plain.tif", dots()))
+        WorldMap.read(tmp_path / "plain.tif")
     deep = written(tmp_path / "deep.tif", dots().astype(np.uint16), crs="EPSG:32651", transform=METRES)
     with pytest.raises(InputError, match="not 8 bits"):
         WorldMap.read(deep)
+
+
+def test_a_damaged_map_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path / "map.tif", dots(), crs="EPSG:32651", transform=METRES)
+    path.write_bytes(path.read_bytes()[:100_000])
+    with pytest.raises(InputError, match=r"cannot read the map: .*map\.tif"):
+        WorldMap.read(path).resampled()
+
+
+@pytest.mark.parametrize(
+    ("transform", "crs", "fault"),
+    [
+        (Affine(0.5, 0, 268_600, 0.5, 0, 2_684_800), "EPSG:32651", "no size on the ground"),
+        (METRES, 'LOCAL_CS["site",UNIT["metre",1]]', "coordinate system tells no latitudes"),
+        (Affine(0.5, 0, 1e9, 0, -0.5, 1e9), "EPSG:32651", "not on the earth"),
+        (Affine(5000, 0, 268_600, 0, -5000, 2_684_800), "EPSG:32651", "too large to be laid on a grid"),
+        (Affine(0.001, 0, 268_600, 0, -0.001, 2_684_800), "EPSG:32651", "less than 3x3 pixels"),
+    ],
+)
+def test_maps_of_no_use_are_refused(transform: Affine, crs: str, fault: str) -> None:
+    with pytest.raises(InputError, match=fault):
+        WorldMap.of_array(dots(), transform, crs).resampled(2.0)
 
 
 @pytest.mark.realdata

@@ -1,9 +1,8 @@
 """Template matching: where in a map does a picture lie, and how sure is that."""
 
-from wnn2hdl.navigate.matching.confidence import Acceptance, choose_threshold, peak_weights, wrong_windows
+from wnn2hdl.navigate.matching.confidence import Acceptance, choose_threshold, peak_weights
 from wnn2hdl.navigate.matching.index import MapIndex
 from wnn2hdl.navigate.matching.peaks import Match, Peak, Window
-from wnn2hdl.navigate.matching.poses import PoseMatch, search_poses
 from wnn2hdl.navigate.matching.scores import Picture, Score
 
 __all__ = [
@@ -12,11 +11,8 @@ __all__ = [
     "Match",
     "Peak",
     "Picture",
-    "PoseMatch",
     "Score",
     "Window",
     "choose_threshold",
     "peak_weights",
-    "search_poses",
-    "wrong_windows",
 ]

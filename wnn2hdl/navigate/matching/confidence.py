@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.navigate.matching.peaks import Match, Window
+from wnn2hdl.navigate.matching.peaks import Match
 
 RIGHT_M = 100.0
 """A fix is right if it is less than this away from the truth."""
@@ -50,7 +50,7 @@ def choose_threshold(
     """The lowest threshold from which on the fixes given are expected to be right often enough.
 
     A few frames cannot tell how often a wrong match is confident, but they tell, roughly, how many matches
-    are wrong; matches known to be wrong are cheap, by searches where the truth is not (`wrong_windows`). By
+    are wrong; matches known to be wrong are cheap, by what searches find where the truth is not. By
     Bayes' rule::
 
         expected precision = p R / (p R + (1 - p) F)
@@ -111,31 +111,3 @@ def peak_weights(match: Match) -> tuple[float, ...]:
     odds = np.exp(PSR_WEIGHT * (np.asarray(heights) - heights[0]))
     total = float(odds.sum() + np.exp(min(PSR_WEIGHT * (WRONG_PSR - heights[0]), 30.0)))
     return tuple(float(one) / total for one in odds)
-
-
-def wrong_windows(
-    row: float, col: float, radius: float, shape: tuple[int, int], apart: float
-) -> list[Window]:
-    """Windows as large as a search's in which the truth does not lie, side by side over the map.
-
-    What a frame's search finds there is wrong for certain: a negative for `choose_threshold`.
-
-    Args:
-        row: the template's true row.
-        col: its true column.
-        radius: of the windows, as in `Window.around`.
-        shape: rows and columns of the map.
-        apart: all positions are farther than this from the truth, in rows or columns, pixels.
-
-    Returns:
-        the windows whose positions all lie on the map.
-    """
-    step = 2 * radius + 1
-    windows = []
-    for down in range(-int(row // step) - 1, int((shape[0] - row) // step) + 2):
-        for across in range(-int(col // step) - 1, int((shape[1] - col) // step) + 2):
-            window = Window.around(row + down * step, col + across * step, radius)
-            nearest = max(abs(down), abs(across)) * step - radius
-            if window == window.clip(Window(0, 0, *shape)) and nearest > apart:
-                windows.append(window)
-    return windows

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.navigate.matching import Match, Peak, Window, choose_threshold, peak_weights, wrong_windows
+from wnn2hdl.navigate.matching import Match, Peak, choose_threshold, peak_weights
 
 
 def flight(rng: np.random.Generator, frames: int) -> tuple[list[float], list[float]]:
@@ -47,18 +47,6 @@ def test_no_threshold_accepts_if_nothing_was_right() -> None:
 def test_a_threshold_needs_matches() -> None:
     with pytest.raises(InputError, match="error is known"):
         choose_threshold([], [])
-
-
-def test_wrong_windows_stay_away_from_the_truth_and_on_the_map() -> None:
-    windows = wrong_windows(500, 300, 190, (1200, 1300), apart=200)
-    assert windows
-    for window in windows:
-        assert window.clip(Window(0, 0, 1200, 1300)) == window
-        rows = max(window.top - 500, 500 - (window.bottom - 1))
-        cols = max(window.left - 300, 300 - (window.right - 1))
-        assert max(rows, cols) > 0
-    near = wrong_windows(500, 300, 190, (1200, 1300), apart=0)
-    assert len(near) > len(windows)
 
 
 def test_weights_of_peaks_leave_room_for_none() -> None:
