@@ -1,4 +1,4 @@
-"""`samples`: the embedded landscapes as files, for first steps without imagery of one's own."""
+"""`samples`: the embedded landscapes and the embedded flight as files, for first steps without data."""
 
 from pathlib import Path
 
@@ -8,22 +8,37 @@ from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import SAMPLE_IMAGES, SAMPLE_SIDE, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.pipeline.landscapes import IMAGES, KINDS, MASKS, PALETTE, write_landscapes
+from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.samples.flight import FULL_MAP, make_flight, write_flight
+
+FRAMES = 35
+"""As many as the reference design's flight had."""
 
 
 @app.command("samples")
-@click.option("--images", "count", type=click.IntRange(min=1), default=SAMPLE_IMAGES, show_default=True)
+@click.option("--flight", is_flag=True, help="Write a flight over a map instead.")
+@click.option(
+    "--images",
+    "count",
+    type=click.IntRange(min=1),
+    help=f"How many landscapes, or frames.  [default: {SAMPLE_IMAGES}; of a flight {FRAMES}]",
+)
 @click.option(
     "--side",
     type=click.IntRange(min=1),
-    default=SAMPLE_SIDE,
-    show_default=True,
-    help="Height and width in pixels.",
+    help="Height and width in pixels of a landscape, or of the flight's map.  "
+    f"[default: {SAMPLE_SIDE}; of a map {FULL_MAP[0]} and {FULL_MAP[1]}]",
 )
 @seed_option
 @click.option("-o", "output", type=folder, required=True, help="The folder to write into.")
 @json_option
-def samples_command(count: int, side: int, seed: int, output: Path, as_json: bool) -> None:
+def samples_command(
+    flight: bool, count: int | None, side: int | None, seed: int, output: Path, as_json: bool
+) -> None:
     """Write generated landscapes, with masks of two classes and of all kinds of ground.
+
+    Or a flight over generated country: a map of half a metre a pixel, frames in another season's light,
+    tilted by wind, and their poses, exact to a centimetre. The full map takes a minute and 1 GB of memory.
 
     \b
     Examples:
@@ -31,9 +46,32 @@ def samples_command(count: int, side: int, seed: int, output: Path, as_json: boo
       wnn2hdl train --images build/samples/images --masks build/samples/masks -o build/model.json
       wnn2hdl train --images build/samples/images --masks build/samples/kinds \\
                     --palette build/samples/palette.json -o build/kinds.json
+      wnn2hdl samples --flight --side 1500 --images 12 -o build/country
+      wnn2hdl locate --map build/country/map.tif --frames build/country/frames \\
+                     --poses build/country/poses.csv --camera build/country/camera.toml
     """
     with progress() as report:
-        write_landscapes(output, count, side, seed=seed, progress=report)
-    data = {"folder": str(output), "images": count, "side": side, "seed": seed}
-    parts = ", ".join((IMAGES, MASKS, KINDS, PALETTE))
-    emit(data, f"{count} landscapes of {side}x{side} pixels in {output}: {parts}", as_json=as_json)
+        if flight:
+            shape = (side, side) if side else FULL_MAP
+            count = count or FRAMES
+            _write_flight(output, count, shape, seed, report)
+        else:
+            shape = (side or SAMPLE_SIDE, side or SAMPLE_SIDE)
+            count = count or SAMPLE_IMAGES
+            write_landscapes(output, count, shape[0], seed=seed, progress=report)
+    size = f"{shape[0]}x{shape[1]} pixels"
+    if flight:
+        text = f"{count} frames over a map of {size} in {output}: map.tif, frames, poses.csv, camera.toml"
+    else:
+        text = f"{count} landscapes of {size} in {output}: {', '.join((IMAGES, MASKS, KINDS, PALETTE))}"
+    data = {"folder": str(output), "images": count, "height": shape[0], "width": shape[1], "seed": seed}
+    emit(data, text, as_json=as_json)
+
+
+def _write_flight(output: Path, frames: int, shape: tuple[int, int], seed: int, report: Progress) -> None:
+    report("generating country", 0, 1)
+    made = make_flight(seed, shape, frames=frames)
+    report("generating country", 1, 1)
+    # Besides the frames: map, poses and camera.
+    for done, _ in enumerate(write_flight(output, made), start=1):
+        report("writing files", done, frames + 3)
