@@ -3,8 +3,9 @@
     python benchmarks/surveillance.py IMAGES MASKS [--seed 0] [--mappings 5] [--pixels 5000]
 
 Five folds by image. Every classifier of single pixels is trained on the same pixels: so many of each training
-image, drawn at random. Squares are those of the reference design: 20 x 20, half of the pixels vote; they are
-scored against the majority of each square of the mask, and against its pixels.
+image, drawn at random; those of neighbourhoods draw their own windows. Squares are those of the reference
+design: 20 x 20, half of the pixels vote; they are scored against the majority of each square of the mask, and
+against its pixels.
 """
 
 import argparse
@@ -19,6 +20,7 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
+from wnn2hdl.bitselect import LUTS
 from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, folds, from_masks
 from wnn2hdl.encode import high_bits
 from wnn2hdl.pipeline.budget import train_under_budget
@@ -26,6 +28,7 @@ from wnn2hdl.pipeline.classifiers import PictureClassifier, model_classifier
 from wnn2hdl.pipeline.crossval import FOLDS
 from wnn2hdl.pipeline.evaluation import SquareVote, evaluate, majority_labels
 from wnn2hdl.pipeline.measures import ious
+from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
 from wnn2hdl.pipeline.training import train
 
 SIDE, SHARE = 20, 0.5
@@ -51,9 +54,9 @@ class ColourClassifier:
         colours, place = np.unique(picture.reshape(-1, 3), axis=0, return_inverse=True)
         return self.predict(colours).astype(np.uint8)[place].reshape(picture.shape[:2])
 
-    def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """Any colour is answered for."""
-        return np.ones(picture.shape[:2], dtype=np.bool_)
+        return self.classify(picture), np.ones(picture.shape[:2], dtype=np.bool_)
 
 
 def main() -> None:
@@ -95,6 +98,11 @@ def rivals(pixels: int, mappings: int, seed: int) -> dict[str, list[Trainer]]:
             train_under_budget(dataset, luts, trials=0, seed=seed, progress=silent)
         )
 
+    def neighbourhood(size: int) -> Trainer:
+        return lambda dataset: model_classifier(
+            train_neighbourhood(dataset, size, max_luts=None, seed=seed, progress=silent)
+        )
+
     single: dict[str, list[Trainer]] = {
         "red threshold": [red_threshold],
         "quadratic logistic regression": [quadratic_regression],
@@ -105,8 +113,10 @@ def rivals(pixels: int, mappings: int, seed: int) -> dict[str, list[Trainer]]:
         "bit selection, 1 LUT a pixel": [under_budget(1)],
         "bit selection, 2 LUTs a pixel": [under_budget(2)],
     }
-    # Classifiers that look at neighbours take whole pictures: add them here, without `on_pixels`.
-    return {name: [on_pixels(trainer) for trainer in trainers] for name, trainers in single.items()}
+    whole: dict[str, list[Trainer]] = {
+        f"{size}x{size} neighbourhood, {LUTS} LUTs a pixel": [neighbourhood(size)] for size in (3, 5)
+    }
+    return {name: [on_pixels(trainer) for trainer in trainers] for name, trainers in single.items()} | whole
 
 
 def cross_validated(dataset: Dataset, trainer: Trainer, seed: int) -> list[float]:

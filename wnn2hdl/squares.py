@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 
 Scalar = TypeVar("Scalar", np.uint8, np.bool_)
 
+MAX_SIDE = 4096
+"""The largest side that commands offer: smaller pictures are padded to one square, some 170 MB of memory."""
+
 _GOLDEN = 0x9E3779B97F4A7C15
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     SAMPLE_IMAGES,
@@ -43,6 +44,7 @@ from wnn2hdl.pipeline.measures import (
 from wnn2hdl.pipeline.tagged import RULE, evaluate_tagged
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
+from wnn2hdl.squares import MAX_SIDE
 
 MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 
@@ -55,11 +57,13 @@ MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 @click.option("--chips", type=folder, help="Folder of pictures tagged as a whole; needs --tags.")
 @click.option("--tags", type=file, help="CSV of the chips' tags: image_name,tags.")
 @click.option(
-    "--square", type=click.IntRange(min=1), help="Measure squares of so many pixels a side by majority, too."
+    "--square",
+    type=click.IntRange(1, MAX_SIDE),
+    help="Measure squares of so many pixels a side by majority, too.",
 )
 @click.option(
     "--share",
-    type=click.FloatRange(0, 1, min_open=True),
+    type=FiniteRange(0, 1, min_open=True),
     default=0.5,
     show_default=True,
     help="Share of a square's pixels that vote, drawn at random.",

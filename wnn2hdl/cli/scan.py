@@ -7,6 +7,7 @@ from typing import Any, get_args
 
 import click
 
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
@@ -17,6 +18,7 @@ from wnn2hdl.scan.distributed import run_distributed
 from wnn2hdl.scan.local import run_locally
 from wnn2hdl.scan.options import ScanOptions, Vector
 from wnn2hdl.scan.scanning import Scanner
+from wnn2hdl.squares import MAX_SIDE
 
 
 class BandsType(click.ParamType[tuple[int, ...]]):
@@ -61,11 +63,13 @@ class ScaleType(click.ParamType[tuple[float, float]]):
 @click.argument("picture", metavar="INPUT", type=click.Path(exists=True, path_type=Path))
 @click.option("-o", "output", type=folder, required=True, help="The folder to write into.")
 @click.option(
-    "--square", type=click.IntRange(min=1), help="Let squares of this side vote.  [default: each pixel alone]"
+    "--square",
+    type=click.IntRange(1, MAX_SIDE),
+    help="Let squares of this side vote.  [default: each pixel alone]",
 )
 @click.option(
     "--share",
-    type=click.FloatRange(0, 1, min_open=True),
+    type=FiniteRange(0, 1, min_open=True),
     default=0.5,
     show_default=True,
     help="Share of a square's pixels that vote, drawn at random.",
@@ -79,7 +83,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
     help="Radius in pixels of a majority filter.",
 )
 @click.option(
-    "--minimum-area", type=click.FloatRange(0, min_open=True), help="Dissolve smaller regions, in hectares."
+    "--minimum-area", type=FiniteRange(0, min_open=True), help="Dissolve smaller regions, in hectares."
 )
 @click.option("--minimum-pixels", type=click.IntRange(min=2), help="The same, in pixels.")
 @click.option("--bands", type=BandsType(), help="Bands of red, green, blue.  [default: what the file states]")

@@ -35,8 +35,8 @@ class PictureClassifier(Protocol):
             uint8 ``[height - 2 * halo, width - 2 * halo]``.
         """
 
-    def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-        """Of the same pixels, those whose colours the training or the care set knows; the same shape."""
+    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        """What `classify` returns, and which of these pixels the training or the care set knows, bool."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,17 +67,17 @@ class PixelTable:
         """See `PictureClassifier.classify`."""
         return np.take(self.answers, self.encoder.codes(picture))
 
-    def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-        """See `PictureClassifier.covered`."""
-        height, width = (side - 2 * self.halo for side in picture.shape[:2])
-        if self.colours is None:
-            known = np.ones((height, width), dtype=np.bool_)
-        else:
+    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        """See `PictureClassifier.answer`."""
+        codes = self.encoder.codes(picture)
+        known = np.ones(codes.shape, dtype=np.bool_) if self.care.all() else np.take(self.care, codes)
+        if self.colours is not None:
+            height, width = codes.shape
             middle = picture[self.halo : self.halo + height, self.halo : self.halo + width]
-            known = np.take(self.colours, COLOURS.codes(middle))
-        if not self.care.all():
-            known &= np.take(self.care, self.encoder.codes(picture))
-        return known
+            # Codes of the default encoder are those of colours.
+            colours = codes if self.encoder == COLOURS else COLOURS.codes(middle)
+            known &= np.take(self.colours, colours)
+        return np.take(self.answers, codes), known
 
 
 def open_classifier(path: Path) -> PictureClassifier:

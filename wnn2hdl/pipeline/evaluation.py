@@ -69,9 +69,10 @@ def evaluate(classifier: "PictureClassifier", dataset: Dataset, progress: Progre
     covered = np.zeros(len(dataset), dtype=np.int64)
     for position, image in enumerate(dataset):
         picture, labels = _pictures(image, classifier.halo)
-        cells = labels.astype(np.int64) * classes + classifier.classify(picture)
+        answers, known = classifier.answer(picture)
+        cells = labels.astype(np.int64) * classes + answers
         confusion[position] = np.bincount(cells.ravel(), minlength=classes**2).reshape(classes, classes)
-        covered[position] = np.count_nonzero(classifier.covered(picture))
+        covered[position] = np.count_nonzero(known)
         progress("evaluating images", position + 1, len(dataset))
     return Evaluation(dataset.names, dataset.classes, confusion, covered)
 
@@ -118,12 +119,15 @@ class SquareVote:
 
     def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """See `PictureClassifier.classify`."""
-        single = self.each.classify(picture)
-        return vote(single, None, side=self.side, share=self.share, seed=self.seed, count=len(self.classes))
+        return self._vote(self.each.classify(picture))
 
-    def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-        """See `PictureClassifier.covered`."""
-        return self.each.covered(picture)
+    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        """See `PictureClassifier.answer`; the known pixels are the single ones."""
+        single, known = self.each.answer(picture)
+        return self._vote(single), known
+
+    def _vote(self, single: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        return vote(single, None, side=self.side, share=self.share, seed=self.seed, count=len(self.classes))
 
 
 def majority_labels(dataset: Dataset, side: int) -> Dataset:

@@ -35,8 +35,11 @@ class Georeference:
 
     @property
     def located(self) -> bool:
-        """Whether areas on the Earth are known."""
-        return self.crs is not None and self.transform is not None
+        """Whether areas on the Earth are known; a system of a building site's own is tied to no place."""
+        if self.crs is None or self.transform is None:
+            return False
+        system = _rasterio().crs.CRS.from_wkt(self.crs)
+        return bool(system.is_geographic or system.is_projected)
 
     @classmethod
     def of(cls, source: Any) -> Self:
@@ -50,12 +53,10 @@ def same_grid(one: Georeference, other: Georeference, height: int, width: int) -
 
     One without a coordinate system fits every grid, since nothing contradicts it.
     """
-    if not (one.located and other.located):
+    if one.crs is None or one.transform is None or other.crs is None or other.transform is None:
         return True
     if _rasterio().crs.CRS.from_wkt(one.crs) != _rasterio().crs.CRS.from_wkt(other.crs):
         return False
-    assert one.transform is not None
-    assert other.transform is not None
     a, b, c, d, e, f = (x - y for x, y in zip(one.transform, other.transform, strict=True))
     size = math.sqrt(abs(one.transform[0] * one.transform[4] - one.transform[1] * one.transform[3]))
     corners = ((0, 0), (0, width), (height, 0), (height, width))

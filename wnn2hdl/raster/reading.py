@@ -1,6 +1,7 @@
 """Windows of a raster as red, green and blue of 8 bits, with what may be classified of them."""
 
 import threading
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -58,7 +59,8 @@ class RasterReader:
 
     Raises:
         InputError: the file or its mask cannot be read; its bands are not named; its samples have other than
-            8 bits and no scaling was given; it is to be turned upright; the mask has another size or place.
+            8 bits and no scaling was given, are complex, or mean white by 0; the mask is a JPEG, or has
+            another size or place.
         ExtraMissingError: rasterio is not installed.
     """
 
@@ -80,6 +82,8 @@ class RasterReader:
             self._own_mask = flags != {"all_valid"}
             self._scale = reading.scale or _stated_scale(source, self._channels)
             kinds = {source.dtypes[band - 1] for band in self._channels.indexes}
+            if self._palette is None:
+                _require_levels(source, path, kinds)
             if self._scale is None and kinds != {"uint8"}:
                 raise _unscaled(source, self._channels.indexes, path, kinds)
         self.masked = self._own_mask or reading.mask is not None
@@ -91,7 +95,8 @@ class RasterReader:
     def require_upright(self) -> None:
         """Raise InputError if the file says that viewers must turn the picture; windows are not turned."""
         try:
-            with Image.open(self._path) as picture:
+            # Pillow warns of large pictures and refuses larger ones; only the head is read here.
+            with warnings.catch_warnings(action="ignore"), Image.open(self._path) as picture:
                 orientation = picture.getexif().get(_ORIENTATION_TAG, 1)
         except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
             return
@@ -214,6 +219,16 @@ def _stated_scale(source: Any, channels: Channels) -> tuple[float, float] | None
     """Of samples of 1 to 7 bits, whose largest value is white by the formats' own definitions."""
     bits = int(source.tags(channels.indexes[0], ns="IMAGE_STRUCTURE").get("NBITS", 8))
     return None if bits >= 8 or channels.palette else (0.0, float((1 << bits) - 1))
+
+
+def _require_levels(source: Any, path: Path, kinds: set[str]) -> None:
+    """Refuse samples that are no rising levels; GDAL gives them as they are stored."""
+    if any(kind.startswith("complex") for kind in kinds):
+        raise InputError("the samples are complex", value=path, mend="make levels of them first")
+    if source.tags(ns="IMAGE_STRUCTURE").get("MINISWHITE") == "YES":
+        raise InputError(
+            "0 is white in the file", value=path, mend="save it with 0 for black (photometric MINISBLACK)"
+        )
 
 
 def _unscaled(source: Any, indexes: tuple[int, ...], path: Path, kinds: set[str]) -> InputError:

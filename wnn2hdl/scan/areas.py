@@ -52,7 +52,8 @@ def class_areas(raster: Path, names: Sequence[str]) -> tuple[ClassArea, ...]:
     """
     pixels, square_metres = np.zeros(256, dtype=np.int64), np.zeros(256)
     with open_classes(raster) as dataset:
-        areas = PixelAreas(dataset) if Georeference.of(dataset).located else None
+        place = Georeference.of(dataset)
+        areas = PixelAreas(place, *dataset.shape) if place.located else None
         for rows in strip_rows(dataset, STRIP_PIXELS):
             strip = read_strip(dataset, rows)
             present = strip.classes[strip.valid]

@@ -140,6 +140,5 @@ def _by_strips(
     rows = max(_STRIP_PIXELS // shape[1], _STRIP_ROWS)
     for top in range(0, shape[0], rows):
         strip = picture[top : top + rows + 2 * classifier.halo]
-        classes[top : top + rows] = classifier.classify(strip)
-        known[top : top + rows] = classifier.covered(strip)
+        classes[top : top + rows], known[top : top + rows] = classifier.answer(strip)
     return classes, known

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.raster import Georeference
 
 if TYPE_CHECKING:
-    from pyproj import CRS, Transformer
-    from rasterio.io import DatasetReader
+    from pyproj import Transformer
 
 _SEMI_MAJOR = 6378137.0
 _FLATTENING = 1 / 298.257223563
@@ -34,16 +34,27 @@ class PixelAreas:
     ellipsoid. In a raster of whole parallels and meridians this is exact at any size of pixel.
 
     Args:
-        dataset: a raster with a coordinate system.
+        place: where the raster lies; it is located.
+        height: pixels; likewise ``width``.
+
+    Attributes:
+        middle: area of the pixel in the middle, m².
+
+    Raises:
+        ExtraMissingError: pyproj is not installed.
+        InputError: the pixels have no area; `rows` raises it, too, where some lie beyond the projection.
     """
 
-    def __init__(self, dataset: "DatasetReader") -> None:
-        self._transform = dataset.transform
-        self._to_degrees = to_degrees(dataset)
-        self._width, self._height = dataset.width, dataset.height
-        centre = self._corner_areas(np.array([self._height // 2]), np.array([self._width // 2]))
-        side = max(float(centre[0, 0]) ** 0.5, 1e-9)
-        self._spacing = int(np.clip(_NODE_METRES // side, 1, _NODE_PIXELS))
+    def __init__(self, place: Georeference, height: int, width: int) -> None:
+        assert place.crs is not None
+        assert place.transform is not None
+        self._transform = place.transform
+        self._to_degrees = to_degrees(place.crs)
+        self._width, self._height = width, height
+        self.middle = float(self._corner_areas(np.array([height // 2]), np.array([width // 2]))[0, 0])
+        if not self.middle:
+            raise self._no_area()
+        self._spacing = int(np.clip(_NODE_METRES // self.middle**0.5, 1, _NODE_PIXELS))
 
     def rows(self, first: int, end: int) -> NDArray[np.float64]:
         """Areas of the pixels of rows ``first`` to before ``end``: float64 ``[end - first, width]``, m²."""
@@ -57,9 +68,10 @@ class PixelAreas:
         row, column = np.broadcast_arrays(
             rows[:, np.newaxis, np.newaxis] + down, columns[np.newaxis, :, np.newaxis] + right
         )
-        t = self._transform
-        x, y = t.a * column + t.b * row + t.c, t.d * column + t.e * row + t.f
-        longitude, latitude = self._to_degrees.transform(x, y)
+        a, b, c, d, e, f = self._transform
+        longitude, latitude = self._to_degrees.transform(a * column + b * row + c, d * column + e * row + f)
+        if not np.isfinite(longitude).all():
+            raise self._no_area()
         # A pixel may lie across the meridian of 180 degrees, where longitudes jump.
         east = np.radians((longitude - longitude[..., :1] + 180) % 360 - 180) * _SEMI_MAJOR
         north = _SEMI_MAJOR / 2 * _authalic(np.radians(np.clip(latitude, -90, 90)))
@@ -67,9 +79,16 @@ class PixelAreas:
         shoelace = east * np.roll(north, -1, axis=-1) - np.roll(east, -1, axis=-1) * north
         return np.asarray(abs(shoelace.sum(axis=-1)) / 2)
 
+    def _no_area(self) -> InputError:
+        return InputError(
+            "the pixels have no area on the Earth",
+            value=f"transform {self._transform}",
+            mend="correct the picture's transform or coordinate system, for instance with gdal_edit",
+        )
 
-def to_degrees(dataset: "DatasetReader") -> "Transformer":
-    """From the raster's coordinates to longitude and latitude in degrees, in this order.
+
+def to_degrees(crs: str) -> "Transformer":
+    """From the coordinates of a system, given as WKT, to longitude and latitude in degrees, in this order.
 
     Raises:
         ExtraMissingError: pyproj is not installed.
@@ -80,13 +99,7 @@ def to_degrees(dataset: "DatasetReader") -> "Transformer":
         raise ExtraMissingError(
             "areas on the ellipsoid need pyproj", mend="install it with: pip install 'wnn2hdl[geo]'"
         ) from error
-    return Transformer.from_crs(_crs(dataset), "EPSG:4326", always_xy=True)
-
-
-def _crs(dataset: "DatasetReader") -> "CRS":
-    from pyproj import CRS
-
-    return CRS.from_wkt(dataset.crs.to_wkt())
+    return Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
 
 
 def _authalic(latitude: NDArray[np.float64]) -> NDArray[np.float64]:

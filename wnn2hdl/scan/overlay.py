@@ -52,8 +52,7 @@ def write_overlay(
 ) -> None:
     """Write the overlay of a class raster as a PNG of at most ``max_side`` pixels a side.
 
-    A larger raster is thinned to every n-th pixel, so squares keep sharp edges and no colour is mixed of two
-    classes.
+    A larger raster is thinned, from its overviews if it has some: no colour is mixed of two classes.
 
     Args:
         read_picture: gives the picture under the raster at a given height and width.

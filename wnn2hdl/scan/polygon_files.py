@@ -103,7 +103,7 @@ def _features(
 
 
 def _to_degrees(dataset: "DatasetReader") -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
-    to_map, transformer = _to_map(dataset), to_degrees(dataset)
+    to_map, transformer = _to_map(dataset), to_degrees(dataset.crs.to_wkt())
 
     def carry(pixels: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.stack(transformer.transform(*to_map(pixels).T), axis=1).round(DECIMALS)

@@ -90,7 +90,8 @@ def _outlines(
     """After each strip the regions that are finished, in the order of their numbers."""
     import shapely
 
-    areas = PixelAreas(dataset) if Georeference.of(dataset).located else None
+    georeference = Georeference.of(dataset)
+    areas = PixelAreas(georeference, *dataset.shape) if georeference.located else None
     square_metres = np.full(len(regions.pixels), 0.0 if areas else np.nan)
     unfinished: dict[int, list[Any]] = defaultdict(list)
     for index, rows in enumerate(strips):

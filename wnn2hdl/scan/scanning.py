@@ -21,7 +21,6 @@ from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.raster import NODATA, RasterReader, add_overviews, same_grid
 from wnn2hdl.scan.areas import SQUARE_METRES, class_areas, cleared_classes
 from wnn2hdl.scan.change import write_change
-from wnn2hdl.scan.class_raster import open_classes
 from wnn2hdl.scan.cleanup import sieve_raster
 from wnn2hdl.scan.ellipsoid import PixelAreas
 from wnn2hdl.scan.journal import Journal
@@ -29,6 +28,7 @@ from wnn2hdl.scan.mapping import Coverage, Runner, write_classes
 from wnn2hdl.scan.options import ScanOptions
 from wnn2hdl.scan.overlay import overlay_palette, write_overlay
 from wnn2hdl.scan.polygons import write_polygons
+from wnn2hdl.scan.source import Source
 from wnn2hdl.scan.summary import (
     change_figures,
     class_figures,
@@ -132,6 +132,7 @@ class Scanner:
     def _check(self, picture: Path, before: Path | None) -> None:
         """Refuse what cannot be scanned before anything is written."""
         after = RasterReader(picture, self.options.reading)
+        self._minimum_pixels(after)
         if before is None:
             return
         if self.options.vector == "none":
@@ -162,7 +163,6 @@ class Scanner:
                 )
 
     def _folder(self, folder: Path, output: Path) -> dict[str, Any]:
-        started = time.perf_counter()
         pictures = list_images(folder)
         summaries = []
         for number, path in enumerate(pictures):
@@ -183,7 +183,7 @@ class Scanner:
             "coverage": coverage_figures(coverage),
             "warnings": warned,
             **self._provenance(),
-            **_speed(sum(x["pixels"] for x in summaries), time.perf_counter() - started),
+            **_speed(sum(x["pixels"] for x in summaries), sum(x["seconds"] for x in summaries)),
             "pictures": summaries,
         }
         return self._finish(output, summary)
@@ -195,7 +195,7 @@ class Scanner:
             known = read_json(output / SUMMARY_FILE, "a summary")
         except ModelFileError:
             known = {}
-        if known.get("identity") == self._identity(picture):
+        if known.get("identity") == self._identity(picture) and (output / CLASSES_FILE).is_file():
             return known
         return self._finish(output, self._picture(picture, output))
 
@@ -205,6 +205,7 @@ class Scanner:
         identity = self._identity(picture)
         task = Task(picture.absolute(), self.options.reading, self.classifier, self.options.method)
         source = task.open()
+        limit = self._minimum_pixels(source)
         palette = overlay_palette(self.classifier.classes)
         work = output / _WORK
         make_folder(work)
@@ -212,7 +213,10 @@ class Scanner:
             raster = results / CLASSES_FILE
             coverage = write_classes(task, source, kept, self.run, raster, palette, self.progress)
             classify_seconds = time.perf_counter() - started
-            self._sieve(raster)
+            if limit is not None:
+                sieved = raster.with_name("sieved.tif")
+                sieve_raster(raster, sieved, limit, self.progress)
+                sieved.replace(raster)
             add_overviews(raster)
             self.progress("measuring areas", 0, 1)
             areas = class_areas(raster, self.classifier.classes)
@@ -238,15 +242,20 @@ class Scanner:
             "identity": identity,
         }
 
-    def _sieve(self, raster: Path) -> None:
-        """Dissolve small regions, if that is wanted."""
-        limit = self.options.minimum_pixels
-        if self.options.minimum_hectares is not None:
-            limit = _pixels(raster, self.options.minimum_hectares)
-        if limit is not None and limit > 1:
-            sieved = raster.with_name("sieved.tif")
-            sieve_raster(raster, sieved, limit, self.progress)
-            sieved.replace(raster)
+    def _minimum_pixels(self, source: Source) -> int | None:
+        """The least pixels of a region, of the size of the one in the middle; None for no such limit."""
+        place, hectares = source.georeference, self.options.minimum_hectares
+        # That pixels have no area is told now, not when all are classified.
+        areas = PixelAreas(place, source.height, source.width) if place.located else None
+        if hectares is None:
+            return self.options.minimum_pixels
+        if areas is None:
+            raise InputError(
+                "the picture has no georeference, so its pixels have no area",
+                value=f"--minimum-area {hectares:g}",
+                mend="say --minimum-pixels",
+            )
+        return math.ceil(hectares * SQUARE_METRES / areas.middle)
 
     def _change(self, output: Path) -> dict[str, Any]:
         """Compare the class rasters of two dates that are in the output's folder."""
@@ -310,20 +319,6 @@ def _deliver(results: Path, output: Path) -> None:
             (output / name).unlink(missing_ok=True)
     for file in sorted(results.iterdir()):
         file.replace(output / file.name)
-
-
-def _pixels(raster: Path, hectares: float) -> int:
-    """The least number of pixels, of the size of the one in the middle, that cover so many hectares."""
-    with open_classes(raster) as dataset:
-        if not dataset.crs:
-            raise InputError(
-                "the picture has no georeference, so its pixels have no area",
-                value=f"--minimum-area {hectares:g}",
-                mend="say --minimum-pixels",
-            )
-        middle = dataset.height // 2
-        area = float(PixelAreas(dataset).rows(middle, middle + 1)[0, dataset.width // 2])
-    return math.ceil(hectares * SQUARE_METRES / area)
 
 
 def _speed(pixels: int, seconds: float) -> dict[str, float]:

@@ -85,6 +85,9 @@ def total_figures(pictures: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def page(summary: Mapping[str, Any]) -> str:
     """The summary of one picture, or of a folder of them, in Markdown."""
+    cleared = summary["deforested"]
+    # The total of one class would only repeat it.
+    totals = [cleared] if len(cleared["classes"]) != 1 else []
     sections = [
         f"# Scan of {summary['input']}",
         "\n".join(f"**Warning:** {warning}." for warning in summary["warnings"]),
@@ -93,12 +96,10 @@ def page(summary: Mapping[str, Any]) -> str:
             ["class", "pixels", "share", "hectares"],
             (
                 [entry["class"], f"{entry['pixels']:,}", _percent(entry["share"]), _area(entry["hectares"])]
-                for entry in [*summary["classes"], summary["deforested"]]
+                for entry in [*summary["classes"], *totals]
             ),
         ),
-        f"Deforested are the classes {', '.join(summary['deforested']['classes'])}."
-        if len(summary["classes"]) > 2
-        else "",
+        f"Deforested are the classes {', '.join(cleared['classes'])}." if len(summary["classes"]) > 2 else "",
     ]
     if "change" in summary:
         sections += ["## Change", f"Against {summary['before']}.", _change(summary["change"])]

@@ -6,9 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from wnn2hdl.encode import parse_bits
 from wnn2hdl.errors import InputError, ModelFileError
-from wnn2hdl.ir import COLOURS, LutNetwork, Thermometer, WisardModel, codes_to_bits
-from wnn2hdl.pipeline.classifiers import circuit_classifier, familiar_codes, model_classifier, open_classifier
+from wnn2hdl.ir import COLOURS, BitSelect, LutNetwork, Thermometer, WisardModel, codes_to_bits
+from wnn2hdl.pipeline.classifiers import (
+    PixelTable,
+    circuit_classifier,
+    familiar_codes,
+    model_classifier,
+    open_classifier,
+)
 from wnn2hdl.pipeline.verification import open_build
 from wnn2hdl.samples import landscape
 from wnn2hdl.wisard import PixelClassifier
@@ -26,9 +33,9 @@ def test_a_model_file_answers_as_the_model(model: WisardModel, tmp_path: Path) -
 
 def test_a_build_answers_as_its_model_where_it_cares(model: WisardModel, build: Path) -> None:
     circuit, trained = open_classifier(build), model_classifier(model)
-    cared = circuit.covered(PICTURE)
+    answers, cared = circuit.answer(PICTURE)
     assert cared.mean() > 0.9
-    assert np.array_equal(circuit.classify(PICTURE)[cared], trained.classify(PICTURE)[cared])
+    assert np.array_equal(answers[cared], trained.classify(PICTURE)[cared])
 
 
 def test_an_answer_that_is_no_class_is_taken_for_the_last_one(build: Path) -> None:
@@ -41,24 +48,38 @@ def test_an_answer_that_is_no_class_is_taken_for_the_last_one(build: Path) -> No
 
 def test_colours_of_the_training_are_familiar_and_foreign_ones_are_not(model: WisardModel) -> None:
     classifier = model_classifier(model)
-    assert classifier.covered(landscape(64, 64, seed=1).image).all()
+    assert classifier.answer(landscape(64, 64, seed=1).image)[1].all()
     violet = np.full((2, 3, 3), (255, 0, 255), dtype=np.uint8)
-    assert not classifier.covered(violet).any()
+    assert not classifier.answer(violet)[1].any()
 
 
 def test_a_model_that_remembers_its_colours_knows_no_others(model: WisardModel) -> None:
     codes = COLOURS.codes(PICTURE)
     model = replace(model, colours=np.unique(codes)[:-1].astype(np.int64))
-    assert np.array_equal(model_classifier(model).covered(PICTURE), codes != codes.max())
+    assert np.array_equal(model_classifier(model).answer(PICTURE)[1], codes != codes.max())
+
+
+@pytest.mark.parametrize("encoder", [COLOURS, parse_bits("R7,G6,B5,B0")])
+def test_an_answer_is_the_class_and_whether_code_and_colour_are_known(encoder: BitSelect) -> None:
+    rng = np.random.default_rng(0)
+    size = 1 << encoder.width
+    answers, care = rng.integers(0, 2, size, dtype=np.uint8), rng.random(size) < 0.7
+    colours = rng.random(1 << COLOURS.width) < 0.7
+    table = PixelTable(("forest", "deforested"), encoder, answers, care, colours)
+    classes, known = table.answer(PICTURE)
+    codes = encoder.codes(PICTURE)
+    assert np.array_equal(classes, answers[codes])
+    assert np.array_equal(classes, table.classify(PICTURE))
+    assert np.array_equal(known, care[codes] & colours[COLOURS.codes(PICTURE)])
 
 
 def test_the_circuit_of_a_build_remembers_its_colours_too(build: Path) -> None:
     design, _, _ = open_build(build)
     remembering = replace(design.model, colours=np.array([0], dtype=np.int64))
     circuit = replace(circuit_classifier(design), care=np.ones(256, dtype=np.bool_))
-    assert circuit.covered(PICTURE).all()
+    assert circuit.answer(PICTURE)[1].all()
     known = replace(circuit, colours=model_classifier(remembering).colours)
-    assert not known.covered(PICTURE).any()
+    assert not known.answer(PICTURE)[1].any()
 
 
 def test_what_was_seen_too_rarely_to_fire_is_familiar_all_the_same(model: WisardModel) -> None:

@@ -38,8 +38,9 @@ class LeftNeighbour:
     def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
         return (picture[1:-1, :-2, 0] > 127).astype(np.uint8)
 
-    def covered(self, picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-        return np.ones((len(picture) - 2, picture.shape[1] - 2), dtype=np.bool_)
+    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        classes = self.classify(picture)
+        return classes, np.ones(classes.shape, dtype=np.bool_)
 
 
 def test_pixels_are_counted_by_true_class_and_answer() -> None:

@@ -46,8 +46,17 @@ def test_a_build_notes_confusion_model_and_command(build: Path) -> None:
 
 def test_the_command_leaves_out_what_is_usual_and_quotes() -> None:
     assert command("x", CompileOptions()) == "wnn2hdl compile x/model.json -o x-again"
-    options = CompileOptions(care=Path("my imagery"), care_minimum=3, style="rtl", sobel_threshold=99)
-    assert command("x", options).endswith("--care 'my imagery' --care-min 3 --emit rtl")
+    options = CompileOptions(care=Path("/my imagery"), care_minimum=3, style="rtl", sobel_threshold=99)
+    assert command("x", options).endswith("--care '/my imagery' --care-min 3 --emit rtl")
+
+
+def test_the_command_finds_its_imagery_from_the_folder_that_it_is_run_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    told = command("x", CompileOptions(care=Path("imagery"), edges="patterns.txt"))
+    assert told.endswith(f"--care {tmp_path}/imagery --edges {tmp_path}/patterns.txt")
+    assert command("x", CompileOptions(edges="learned")).endswith("--edges learned")
 
 
 def test_the_sample_is_the_middle_of_the_first_test_image() -> None:

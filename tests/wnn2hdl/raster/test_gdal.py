@@ -28,5 +28,13 @@ def test_another_coordinate_system_is_another_grid() -> None:
     assert not same_grid(PLACE, other, 100, 100)
 
 
+def test_a_system_tied_to_no_place_on_the_earth_gives_no_areas_but_a_grid() -> None:
+    site = Georeference('LOCAL_CS["building site",UNIT["metre",1]]', PLACE.transform)
+    assert PLACE.located
+    assert not site.located
+    assert same_grid(site, site, 100, 100)
+    assert not same_grid(site, replace(site, transform=(10.0, 0.0, 600.0, 0.0, -10.0, 900.0)), 100, 100)
+
+
 def test_what_has_no_place_contradicts_nothing() -> None:
     assert same_grid(PLACE, Georeference(), 100, 100)

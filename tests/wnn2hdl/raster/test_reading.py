@@ -137,6 +137,22 @@ def test_numbers_that_are_none_are_not_valid(save: Any) -> None:
         RasterReader(save(samples, photometric="rgb"), Reading())
 
 
+def test_complex_samples_are_refused_scaled_or_not(save: Any) -> None:
+    path = save(np.ones((3, 20, 30), dtype=np.complex64), photometric="rgb")
+    for reading in (Reading(), Reading(scale=(0, 1))):
+        with pytest.raises(InputError, match="the samples are complex"):
+            RasterReader(path, reading)
+
+
+def test_levels_that_mean_white_by_zero_are_refused(save: Any, scene: NDArray[np.uint8]) -> None:
+    path = save(scene[:1], photometric="miniswhite")
+    with pytest.raises(InputError, match="0 is white"):
+        RasterReader(path, Reading())
+    # Of one bit GDAL makes a palette, which says so itself.
+    picture, _ = whole(save(scene[:1] & 1, "fax.tif", photometric="miniswhite", nbits=1))
+    assert np.array_equal(picture[..., 0], np.where(scene[0] & 1, 0, 255))
+
+
 @pytest.mark.parametrize("kind", ["int8", "int16", "uint16", "uint8"])
 def test_scaling_by_table_is_scaling_by_arithmetic(kind: str) -> None:
     limits = np.iinfo(kind)
@@ -182,6 +198,13 @@ def test_a_picture_that_is_to_be_turned_is_not_read_in_windows(tmp_path: Path) -
         RasterReader(tmp_path / "held.jpg", Reading()).require_upright()
     Image.new("RGB", (20, 10)).save(tmp_path / "upright.jpg")
     RasterReader(tmp_path / "upright.jpg", Reading()).require_upright()
+
+
+def test_a_large_picture_draws_no_warning(
+    monkeypatch: pytest.MonkeyPatch, save: Any, scene: NDArray[np.uint8]
+) -> None:
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", scene[0].size - 1)
+    RasterReader(save(scene, photometric="rgb"), Reading()).require_upright()
 
 
 def test_what_is_no_raster_is_one_line(tmp_path: Path, save: Any, scene: NDArray[np.uint8]) -> None:

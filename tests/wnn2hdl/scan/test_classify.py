@@ -49,7 +49,7 @@ def test_a_neighbourhood_sees_the_picture_beyond_its_window_and_repeated_borders
     padded = np.pad(pixels, ((2, 2), (2, 2), (0, 0)), mode="edge")
     classes, _, covered = by_windows(PlainPicture(pixels), neighbourhood, Method(), 31, 47)
     assert np.array_equal(classes, neighbourhood.classify(padded))
-    assert covered == neighbourhood.covered(padded).sum()
+    assert covered == neighbourhood.answer(padded)[1].sum()
 
 
 @settings(deadline=None, max_examples=30)

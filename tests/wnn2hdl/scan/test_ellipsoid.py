@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from wnn2hdl.errors import InputError
+from wnn2hdl.raster import Georeference
 from wnn2hdl.scan.ellipsoid import PixelAreas
 
 rasterio = pytest.importorskip("rasterio")
@@ -20,7 +22,7 @@ def raster(path: Path, crs: str, transform: tuple[float, ...], height: int, widt
 
 def areas(path: Path, rows: tuple[int, int]) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     with rasterio.open(path) as dataset:
-        return PixelAreas(dataset).rows(*rows)
+        return PixelAreas(Georeference.of(dataset), *dataset.shape).rows(*rows)
 
 
 def geodesic_area(longitudes: list[float], latitudes: list[float]) -> float:
@@ -89,3 +91,14 @@ def test_areas_between_nodes_are_those_at_every_pixel(tmp_path: Path) -> None:
         top = -8 - (130 + row) * 1e-4
         one = raster(tmp_path / "one.tif", "EPSG:4326", (1e-4, 0, -60 + column * 1e-4, 0, -1e-4, top), 1, 1)
         assert found[row, column] == pytest.approx(areas(one, (0, 1))[0, 0], rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    "transform",
+    [(10, 0, 1e12, 0, -10, 1e13), (0, 0, 500_000, 0, 0, 9_000_000)],
+    ids=["beyond the projection", "of no size"],
+)
+def test_pixels_without_an_area_are_refused(tmp_path: Path, transform: tuple[float, ...]) -> None:
+    path = raster(tmp_path / "lost.tif", "EPSG:32720", transform, 4, 5)
+    with pytest.raises(InputError, match="the pixels have no area on the Earth"):
+        areas(path, (0, 4))

@@ -49,7 +49,7 @@ def test_windows_are_taken_as_they_are_needed(picture_file: Path, neighbourhood:
 
 def test_an_error_in_a_thread_comes_through(tmp_path: Path, neighbourhood: PictureClassifier) -> None:
     class Broken(type(neighbourhood)):  # type: ignore[misc]
-        def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
             raise MemoryError
 
     write_png(tmp_path / "a.png", np.zeros((150, 210, 3), dtype=np.uint8))

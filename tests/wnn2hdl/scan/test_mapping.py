@@ -52,7 +52,7 @@ def test_the_raster_holds_the_classes(
     padded = np.pad(pixels, ((2, 2), (2, 2), (0, 0)), mode="edge")
     classes, coverage = written(task, counting(), tmp_path)
     assert np.array_equal(classes, task.classifier.classify(padded))
-    assert coverage == Coverage(padded[2:-2, 2:-2, 0].size, int(task.classifier.covered(padded).sum()))
+    assert coverage == Coverage(padded[2:-2, 2:-2, 0].size, int(task.classifier.answer(padded)[1].sum()))
 
 
 @pytest.mark.parametrize("stop", [0, 1, 7, 14])

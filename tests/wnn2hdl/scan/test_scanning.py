@@ -77,6 +77,7 @@ def test_a_picture_becomes_a_map_polygons_an_overlay_and_a_summary(
     assert summary["deforested"]["share"] == cleared.mean()
     assert summary["deforested"]["hectares"] is None
     assert summary["coverage"]["share"] == (pixels[..., 0] >= 64).mean()
+    assert (tmp_path / "out" / "summary.md").read_text().count("| deforested |") == 1
 
 
 def test_foreign_imagery_is_told(
@@ -116,7 +117,8 @@ def test_small_regions_are_dissolved(scan: Scan, tmp_path: Path) -> None:
         assert np.array_equal(classes_of(scan, scene, tmp_path, options), expected)
     write_png(tmp_path / "plain.png", pixels)
     with pytest.raises(InputError, match="no georeference"):
-        scan(tmp_path / "plain.png", tmp_path / "out", options=ScanOptions(minimum_hectares=1))
+        scan(tmp_path / "plain.png", tmp_path / "plain", options=ScanOptions(minimum_hectares=1))
+    assert not (tmp_path / "plain").exists()
 
 
 def classes_of(
@@ -208,8 +210,19 @@ def test_an_interrupted_folder_goes_on_with_the_next_picture(
     again = counting()
     assert scan(chips, tmp_path / "out", run=again)["pixels"] == 3 * pixels[..., 0].size
     assert len(again.done) == 1
+    (tmp_path / "out" / "b" / "classes.tif").unlink()
+    scan(chips, tmp_path / "out", run=again)
+    assert len(again.done) == 2
     scan(chips, tmp_path / "out", run=again, options=ScanOptions(method=Method(seed=1)))
-    assert len(again.done) == 4
+    assert len(again.done) == 5
+
+
+def test_pictures_scanned_before_do_not_make_a_folder_quick(
+    scan: Scan, picture_file: Path, tmp_path: Path
+) -> None:
+    first = scan(picture_file.parent, tmp_path / "out")
+    again = scan(picture_file.parent, tmp_path / "out")
+    assert again["seconds"] == first["seconds"] == first["pictures"][0]["seconds"]
 
 
 def test_an_interruption_leaves_nothing_half_written(
@@ -255,6 +268,9 @@ def test_what_cannot_be_read_leaves_no_folder(scan: Scan, tmp_path: Path) -> Non
     (tmp_path / "empty").mkdir()
     with pytest.raises(InputError, match="no pictures"):
         scan(tmp_path / "empty", tmp_path / "out")
+    flat = save_scene(tmp_path / "flat.tif", np.zeros((9, 9, 3), np.uint8), east=1e12)
+    with pytest.raises(InputError, match="no area on the Earth"):
+        scan(flat, tmp_path / "out")
     with pytest.raises(InputError, match="not with a folder"):
         scan(tmp_path, tmp_path / "out", before=tmp_path / "text.png")
     assert not (tmp_path / "out").exists()
