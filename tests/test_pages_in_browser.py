@@ -61,6 +61,13 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
     assert wrong == []
 
 
+CUT_OFF = """[...document.querySelectorAll('main *')]
+  .filter(x => x.scrollWidth > x.clientWidth + 1)
+  .filter(x => ['auto', 'scroll'].includes(getComputedStyle(x).overflowX))
+  .map(x => [x.className, x.tabIndex === 0 || x.querySelector('[tabindex="0"], a, button') !== null])"""
+"""What holds more than it shows, and whether the keyboard gets there."""
+
+
 def asked(url: str) -> bool:
     """Whether an address is that of something outside the page."""
     return not url.startswith(("file:", "data:"))
@@ -201,6 +208,59 @@ def test_texts_stand_out_from_their_ground(open_page: Callable[..., Page], folde
     for scheme in ("light", "dark"):
         for ink, ground, ratio in open_page(folder / "report.html", scheme).evaluate(script):
             assert ratio >= 4.5, (scheme, ink, ground)
+
+
+def test_figures_stand_out_from_the_shades_of_the_confusion(
+    open_page: Callable[..., Page], folder: Path
+) -> None:
+    # 4.5 to 1 again, where the ground is a mixture.
+    script = """() => {
+      const luminance = colour => {
+        const whole = colour.startsWith('rgb') ? 255 : 1;
+        const parts = colour.match(/[\\d.]+/g).slice(0, 3).map(x => x / whole);
+        const linear = parts.map(x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+      };
+      return [...document.querySelectorAll('.confusion td small')].map(small => {
+        const ink = getComputedStyle(small).color;
+        if (ink.includes('/')) throw new Error(`${ink} is not opaque`);
+        const ground = getComputedStyle(small.parentElement).backgroundColor;
+        const [a, b] = [luminance(ink), luminance(ground)];
+        return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      });
+    }"""
+    for scheme in ("light", "dark"):
+        ratios = open_page(folder / "report.html", scheme).evaluate(script)
+        assert len(ratios) == 4
+        assert min(ratios) >= 4.5, scheme
+
+
+@pytest.fixture
+def index(write_build: Callable[..., Path], tmp_path: Path) -> Path:
+    """The index of two builds, compared."""
+    folders = [write_build(tmp_path / name, command=f"wnn2hdl compile {'x' * 200}") for name in "ab"]
+    entries = open_entries(folders, tmp_path / "index.html")
+    (tmp_path / "index.html").write_text(index_page(entries, (entries[0], entries[1])))
+    return tmp_path / "index.html"
+
+
+def test_nothing_is_cut_off_on_paper(open_page: Callable[..., Page], index: Path) -> None:
+    for path in (index, index.parent / "a" / "report.html"):
+        page = open_page(path)
+        page.emulate_media(media="print")
+        # A4 between its margins, at 96 pixels an inch.
+        page.set_viewport_size({"width": 688, "height": 1000})
+        assert page.evaluate("document.documentElement.scrollWidth") <= 688, path
+        assert page.evaluate(CUT_OFF) == [], path
+
+
+def test_what_scrolls_is_reached_by_keys(open_page: Callable[..., Page], index: Path) -> None:
+    for path in (index, index.parent / "a" / "report.html"):
+        page = open_page(path)
+        page.set_viewport_size({"width": 360, "height": 800})
+        scrolling = page.evaluate(CUT_OFF)
+        assert scrolling, path
+        assert all(reached for _, reached in scrolling), (path, scrolling)
 
 
 def test_columns_of_the_index_sort_by_mouse_and_keyboard(

@@ -49,6 +49,10 @@ WINDOW_M = 95.0
 
 PAGE = "index.html"
 
+REFERENCE = "the reference design's discriminators (n = 4, k = 16), on the colours of the training landscapes"
+SMALLEST = f"the most accurate classifier of at most {MAX_LUTS} LUTs a pixel, on every input"
+"""What the two builds are."""
+
 
 @dataclass(frozen=True, eq=False)
 class Demo:
@@ -111,7 +115,8 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
         missing = error.line()
     entries = open_entries([reference.folder, smallest.folder], folder / PAGE)
     exhibits = _exhibits(outcome, scanned, flight)
-    write_text(folder / PAGE, index_page(entries, (entries[0], entries[1]), exhibits=exhibits))
+    lead = f"From generated landscapes: {REFERENCE} (reference), and {SMALLEST} (smallest)."
+    write_text(folder / PAGE, index_page(entries, (entries[0], entries[1]), exhibits=exhibits, lead=lead))
     return Demo(folder / PAGE, outcome, reference, smallest, playback.windows, scanned, flight, missing)
 
 
@@ -156,7 +161,10 @@ def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRu
         exhibits.append(Exhibit("Map", text, "scan/summary.md", f"scan/{OVERLAY_FILE}"))
     if flight:
         row = flight.rows(flight.result.searches[-1])["perspective-weightless"]
-        text = f"A flight located on the whole map by weightless edges: {row.mean_m:.1f} m off on average."
+        text = (
+            f"{len(row.fixes)} frames of a generated flight, located on the whole map by weightless edges: "
+            f"{row.mean_m:.1f} m off on average."
+        )
         exhibits.append(Exhibit("Flight", text, "flight/flight.md", "flight/tracks_map.png"))
     text = f"{len(outcome.plan)} trained and costed circuits, and the statistics that choose among them."
     exhibits.append(Exhibit("Sweep", text, "sweep/index.html", "sweep/pareto.png"))

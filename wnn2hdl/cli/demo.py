@@ -25,7 +25,8 @@ def demo_command(output: Path, seed: int, as_json: bool) -> None:
       wnn2hdl demo
       wnn2hdl demo --seed 1 -o build/another
     """
-    from wnn2hdl.demo import run_demo  # every application; other commands need not wait for them
+    # Every application; other commands need not wait for them.
+    from wnn2hdl.demo import REFERENCE, SMALLEST, run_demo
     from wnn2hdl.navigate.summary import summary
 
     with progress() as report:
@@ -42,6 +43,7 @@ def demo_command(output: Path, seed: int, as_json: bool) -> None:
         "missing": demo.missing,
     }
     lines = [
+        f"From generated landscapes, two circuits.\nreference: {REFERENCE}\nsmallest: {SMALLEST}",
         parts_table(demo.reference.report, demo.reference.folder),
         parts_table(demo.smallest.report, demo.smallest.folder),
         f"{len(demo.outcome.plan)} circuits trained and costed in a sweep; {demo.windows:,} windows of a "

@@ -1,6 +1,7 @@
 """`doctor`: which tools are here, which are missing, and how to get them."""
 
 from dataclasses import asdict
+from shutil import get_terminal_size
 
 from rich.console import Console
 from rich.table import Table
@@ -34,11 +35,12 @@ def doctor_command(as_json: bool) -> None:
 
 
 def _table(parts: tuple[Part, ...]) -> str:
-    table = Table("", "tool", "what for", "found, or how to get it", box=None, header_style="bold")
+    table = Table("", "tool", "what for", box=None, header_style="bold")
+    table.add_column("found, or how to get it", overflow="fold")
     for part in parts:
         mark = "ok" if part.found else "MISSING" if part.needed else "-"
         table.add_row(mark, part.name, part.purpose, part.found or f"{part.fault}; {part.mend}")
-    console = Console(width=140, markup=False)
+    console = Console(width=get_terminal_size((140, 24)).columns, markup=False)
     with console.capture() as captured:
         console.print(table)
-    return captured.get().rstrip()
+    return "\n".join(line.rstrip() for line in captured.get().splitlines())

@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 import click
 
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file
 from wnn2hdl.cli.output import emit, json_option
@@ -60,7 +61,7 @@ _existing = click.Path(exists=True, path_type=Path)
 @click.option("--baseline", type=file, help="Gate: builds as they were, a file of --write-baseline.")
 @click.option("--write-baseline", "record", type=file, help="Record the builds as they are, and no gate.")
 @click.option("--max-luts", type=click.IntRange(min=0), help="Gate: LUTs that a build's target may take.")
-@click.option("--min-accuracy", type=click.FloatRange(0, 1), help="Gate: least accuracy, as in 0.93.")
+@click.option("--min-accuracy", type=FiniteRange(0, 1), help="Gate: least accuracy, as in 0.93.")
 @click.option(
     "--max-regress",
     type=click.IntRange(min=0),
@@ -107,7 +108,7 @@ def report_command(
             "two outputs on stdout", value=f"--json and --format {form}", mend="name a file with -o"
         )
     folders = _folders(builds)
-    if form == "html" and output is None and len(folders) > 1:
+    if form == "html" and output is None and record is None and len(folders) > 1:
         output = folders[0].parent / INDEX
     entries = open_entries(folders, output or INDEX)
     pair = _pair(folders, entries, compare)

@@ -32,6 +32,7 @@ SAMPLE_SEED = 1000
 
 _FLAGS = {"care_minimum": "--care-min", "style": "--emit"}
 _NO_FLAG = frozenset({"sobel_threshold"})
+_EDGE_SETS = frozenset({"boundary", "half-plane", "learned"})
 
 
 def sample_picture(test_set: Dataset | None) -> NDArray[np.uint8]:
@@ -143,8 +144,15 @@ def command(name: str, options: CompileOptions) -> str:
     usual = asdict(CompileOptions())
     for option, value in asdict(options).items():
         if value != usual[option] and option not in _NO_FLAG:
-            words += [_FLAGS.get(option, f"--{option.replace('_', '-')}"), str(value)]
+            words += [_FLAGS.get(option, f"--{option.replace('_', '-')}"), _word(option, value)]
     return shlex.join(words)
+
+
+def _word(option: str, value: Any) -> str:
+    # Paths are whole, since the command is run from another folder than the one they were given in.
+    if isinstance(value, Path) or (option == "edges" and value not in _EDGE_SETS):
+        return str(Path(value).resolve())
+    return str(value)
 
 
 def _pictures(

@@ -185,7 +185,8 @@ class BuildReport:
         options: the options of the command that are part of the result.
         hashes: SHA-256 of files by name, in hexadecimal.
         tools: versions of programs by name.
-        seconds: wall clock by stage.
+        seconds: wall clock by stage; of checks and syntheses, which are one stage and run side by side, the
+            time after which each was done.
     """
 
     name: str

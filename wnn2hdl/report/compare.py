@@ -116,7 +116,7 @@ def _number(what: str, before: float | None, after: float | None, *, kind: str, 
         return Change(what, *texts, "" if before == after else "measured in one build only")
     difference = after - before
     points = f"{100 * difference:+.{2 if abs(difference) >= 1e-4 else 8}f}".rstrip("0")
-    told = f"{points} points" if kind == "percent" else f"{difference:+,}"
+    told = f"{points} points" if kind == "percent" else f"{difference:+,}{' ps' * (kind == 'ps')}"
     judgement = "" if not good else "better" if difference * good > 0 else "worse"
     return Change(what, *texts, told.replace("-", "\N{MINUS SIGN}"), judgement)
 

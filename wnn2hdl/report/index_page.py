@@ -66,6 +66,7 @@ def index_page(
     pair: tuple[Entry, Entry] | None = None,
     checks: Sequence[Check] = (),
     exhibits: Sequence[Exhibit] = (),
+    lead: str = "Figures as measured; a build's name leads to its report.",
 ) -> str:
     """The page of several builds; the same arguments give the same bytes.
 
@@ -74,6 +75,7 @@ def index_page(
         pair: two of them to compare.
         checks: what the gate found.
         exhibits: shown below the builds.
+        lead: what these builds are, in words.
     """
     points = [
         (entry.name, luts, accuracy)
@@ -99,6 +101,7 @@ def index_page(
             comparison=comparison,
             checks=checks,
             exhibits=exhibits,
+            lead=lead,
             failed=[check for check in checks if not check.passed],
         )
     )

@@ -3,8 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-MISSING = "n/a"
-"""Stands where nothing was measured."""
+from wnn2hdl.report.page import MISSING, form
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -70,13 +69,13 @@ def _proof(proof: Mapping[str, Any]) -> str:
 def _answers(report: Mapping[str, Any]) -> list[tuple[str, str]]:
     edges = report["edges"]
     return [
-        ("accuracy of the circuit", _percent(report["accuracy"])),
-        ("accuracy of the model", _percent(report["model_accuracy"])),
+        ("accuracy of the circuit", form(report["accuracy"], "percent")),
+        ("accuracy of the model", form(report["model_accuracy"], "percent")),
         ("pixel codes cared for", _cell(report["care"]["codes"])),
-        ("share of other imagery that these codes cover", _percent(report["care"]["coverage"])),
+        ("share of other imagery that these codes cover", form(report["care"]["coverage"], "percent")),
         ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
         *(
-            (f"{figure} of its edges against Canny's, within one pixel", _percent(edges[figure]))
+            (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
             for figure in ("precision", "recall", "f1")
         ),
         ("measured on", _cell(edges["imagery"])),
@@ -88,7 +87,7 @@ def _utilisation(report: Mapping[str, Any]) -> str:
     if not parts:
         return ""
     kinds = list(dict.fromkeys(kind for shares in parts.values() for kind in shares))
-    rows = ([part, *(_share(shares.get(kind)) for kind in kinds)] for part, shares in parts.items())
+    rows = ([part, *(form(shares.get(kind), "points") for kind in kinds)] for part, shares in parts.items())
     heads = [_COLUMNS.get(kind, kind) for kind in kinds]
     return f"## Share of the {report['device']}\n\n" + _table(["part", *heads], rows)
 
@@ -116,11 +115,3 @@ def _cell(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
     return str(value).replace("|", "\\|").replace("\n", " ")
-
-
-def _percent(share: float | None) -> str:
-    return MISSING if share is None else f"{100 * share:.2f} %"
-
-
-def _share(percent: float | None) -> str:
-    return MISSING if percent is None else f"{percent:.3f} %"

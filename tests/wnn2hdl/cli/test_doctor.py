@@ -28,6 +28,17 @@ def test_a_machine_that_lacks_only_optional_parts_is_healthy(monkeypatch: pytest
     assert "pip install 'wnn2hdl[geo]'" in shown
 
 
+def test_the_table_fits_the_terminal_and_leaves_nothing_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    path = "/an/installation/as/deep/as/they/come/with/python3.11/site-packages/pyosys/yosys-abc"
+    pretend(monkeypatch, Part("ABC", "LUT mapping", path, None, None, needed=True))
+    for columns in (60, 200):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        shown = CliRunner().invoke(doctor_command).stdout.splitlines()
+        assert max(map(len, shown)) <= columns
+        last = shown[0].index("found")
+        assert path in "".join(line[last:] for line in shown[1:])
+
+
 def test_a_machine_that_cannot_compile_fails_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
     pretend(monkeypatch, LACKING, OPTIONAL)
     done = CliRunner().invoke(doctor_command)

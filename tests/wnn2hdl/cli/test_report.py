@@ -88,6 +88,14 @@ def test_a_baseline_holds_until_a_build_gets_worse(
     assert "b, build: in the baseline, but not among the builds" in err
 
 
+def test_recording_leaves_an_index_alone(run: Run, builds: tuple[Path, Path]) -> None:
+    Path("build/index.html").write_text("of the demo")
+    assert run(*builds, "--write-baseline", "baseline.json")[0] == 0
+    assert Path("build/index.html").read_text() == "of the demo"
+    run(*builds, "--write-baseline", "baseline.json", "-o", "pages.html")
+    assert Path("pages.html").is_file()
+
+
 def test_luts_may_rise_as_far_as_allowed(
     run: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
 ) -> None:
@@ -158,6 +166,7 @@ def test_json_is_one_object_on_stdout_in_every_case(run: Run, builds: tuple[Path
         (("build/a", "--baseline", "build/a/report.json"), "not a baseline, or one of another version"),
         (("build/a", "--max-regress", "1"), "--max-regress is measured from a baseline"),
         (("build/a", "--min-accuracy", "91"), "91.0 is not in the range 0<=x<=1"),
+        (("build/a", "--min-accuracy", "nan"), "nan is no finite number"),
         (("build/a", "--json", "--format", "junit"), "two outputs on stdout"),
         (("build/a", "--write-baseline", "b.json", "--max-luts", "1"), "--write-baseline takes builds as"),
         (("build/a", "--compare", "build/a", "build/b"), "not among the BUILDs: build/b"),

@@ -48,6 +48,12 @@ def test_changes_are_told_and_judged(report: dict[str, Any]) -> None:
     )
 
 
+def test_delays_change_by_picoseconds(report: dict[str, Any]) -> None:
+    other = copy.deepcopy(report)
+    other["parts"]["block"]["delay_ps"] += 1127
+    assert figures(report, other)["logic delay of the target"].change == "+1,127 ps"
+
+
 def test_a_small_change_is_not_told_as_none(report: dict[str, Any]) -> None:
     other = report | {"accuracy": report["accuracy"] + 1e-6}
     assert figures(report, other)["accuracy of the circuit"].change == "+0.0001 points"

@@ -65,3 +65,9 @@ def test_exhibits_show_their_picture_and_lead_to_the_whole(entries: tuple[Entry,
 def test_names_are_escaped(entries: tuple[Entry, Entry]) -> None:
     hostile = Entry("<b>x", "x/report.html", entries[0].report, entries[0].networks)
     assert "<b>x" not in index_page([hostile, entries[1]], (hostile, entries[1]))
+
+
+def test_the_reader_is_told_what_the_builds_are(entries: tuple[Entry, Entry]) -> None:
+    assert "Figures as measured" in index_page(entries)
+    page = index_page(entries, lead="Of <generated> landscapes.")
+    assert '<p class="lead">Of &lt;generated&gt; landscapes.</p>' in page

@@ -50,7 +50,7 @@ def page(report: BuildReport) -> str:
         "Target block, mode domain, proof: proved by SAT in 0.50 s.",
         "| block | 18 | 0 | 2 | 0 | 0 | 0 | 0 | 0.5 | 0 | 1284 |",
         "Counted after `synth_xilinx -family xc7`.",
-        "| block | 0.034 % | 0.000 % |",
+        "| block | 0.034 % | 0 % |",
         "## Published, not measured here",
         "| accuracy of the circuit | 90.00 % |",
         "| accuracy of the model | n/a |",
@@ -86,3 +86,8 @@ def test_a_report_with_nothing_to_tell_has_no_empty_tables() -> None:
     assert "## Minimised" not in text
     assert "None" not in text
     assert "\n\n\n" not in text
+
+
+def test_nearly_all_is_not_told_as_all() -> None:
+    told = page(replace(FULL, care=Care(150, 0.999996)))
+    assert "| share of other imagery that these codes cover | 99.9996 % |" in told.splitlines()

@@ -35,3 +35,14 @@ def test_a_figure_of_another_kind_is_refused(report: dict[str, Any]) -> None:
 def test_a_report_of_another_version_is_refused(report: dict[str, Any]) -> None:
     with pytest.raises(ModelFileError, match="not a report, or one of another version"):
         check_report(report | {"version": 2}, Path("r.json"))
+
+
+def test_what_the_pages_stand_on_must_be_there(report: dict[str, Any]) -> None:
+    with pytest.raises(ModelFileError, match="at target: 'nonsense' is not one of"):
+        check_report(report | {"target": "nonsense"}, Path("r.json"))
+    for part in ("block", "pixel"):
+        parts = {name: figures for name, figures in report["parts"].items() if name != part}
+        with pytest.raises(ModelFileError, match=f"at parts: '{part}' is a required property"):
+            check_report(report | {"parts": parts}, Path("r.json"))
+    with pytest.raises(ModelFileError, match="at model/saturation/0"):
+        check_report(report | {"model": report["model"] | {"saturation": [[]]}}, Path("r.json"))
