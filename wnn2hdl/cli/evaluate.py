@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     SAMPLE_IMAGES,
@@ -22,6 +21,7 @@ from wnn2hdl.cli.options import (
     masks_option,
     palette_option,
     seed_option,
+    share_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.dataset import Dataset, from_samples
@@ -61,13 +61,7 @@ MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
     type=click.IntRange(1, MAX_SIDE),
     help="Measure squares of so many pixels a side by majority, too.",
 )
-@click.option(
-    "--share",
-    type=FiniteRange(0, 1, min_open=True),
-    default=0.5,
-    show_default=True,
-    help="Share of a square's pixels that vote, drawn at random.",
-)
+@share_option
 @seed_option
 @json_option
 def evaluate_command(

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import Palette
@@ -22,6 +23,13 @@ masks_option = click.option(
 )
 palette_option = click.option(
     "--palette", type=file, help="JSON of more classes and their colours in the masks, the background first."
+)
+share_option = click.option(
+    "--share",
+    type=FiniteRange(0, 1, min_open=True),
+    default=0.5,
+    show_default=True,
+    help="Share of a square's pixels that vote, drawn at random.",
 )
 seed_option = click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed.")
 

@@ -9,7 +9,7 @@ import click
 
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder, seed_option
+from wnn2hdl.cli.options import file, folder, seed_option, share_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster import Reading
@@ -67,13 +67,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
     type=click.IntRange(1, MAX_SIDE),
     help="Let squares of this side vote.  [default: each pixel alone]",
 )
-@click.option(
-    "--share",
-    type=FiniteRange(0, 1, min_open=True),
-    default=0.5,
-    show_default=True,
-    help="Share of a square's pixels that vote, drawn at random.",
-)
+@share_option
 @seed_option
 @click.option(
     "--smooth",

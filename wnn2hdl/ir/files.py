@@ -1,5 +1,6 @@
 """Reading and writing the project's JSON: whole files or nothing."""
 
+import fcntl
 import json
 import os
 import tempfile
@@ -35,6 +36,34 @@ def write_bytes(path: Path, content: bytes) -> None:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def open_alone(path: Path, what: str, flags: int = 0) -> int:
+    """Open a file to read and write that no other process may have open like this; made if it is missing.
+
+    Args:
+        path: the file.
+        what: whose it is, for the errors: "scan".
+        flags: as of `os.open`, besides those for reading and writing.
+
+    Returns:
+        the file's number; closing it lets others in.
+
+    Raises:
+        InputError: the file cannot be opened, or another process has it open.
+    """
+    try:
+        file = os.open(path, os.O_RDWR | os.O_CREAT | flags, 0o666)
+    except OSError as error:
+        raise InputError(f"cannot write the {what}", value=f"{path} ({error.strerror})") from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(file)
+        raise InputError(
+            f"another {what} is writing to the same folder", value=path.parent, mend="choose another one"
+        ) from error
+    return file
 
 
 def make_folder(path: Path) -> None:

@@ -1,6 +1,5 @@
 """Finished windows in a file that only grows, so that an interrupted scan goes on where it stopped."""
 
-import fcntl
 import json
 import os
 import struct
@@ -10,6 +9,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from wnn2hdl.errors import InputError
+from wnn2hdl.ir.files import open_alone
 from wnn2hdl.scan.classify import WindowResult
 
 _HEAD = struct.Struct("<IIQQI")
@@ -38,17 +38,7 @@ class Journal:
         """Pixels that were classified in all windows so far."""
         self.covered = 0
         """Those among them whose colours the classifier knows."""
-        try:
-            self._file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
-        except OSError as error:
-            raise InputError("cannot write the scan", value=f"{path} ({error.strerror})") from error
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            os.close(self._file)
-            raise InputError(
-                "another scan is writing to the same folder", value=path.parent, mend="choose another one"
-            ) from error
+        self._file = open_alone(path, "scan")
         first = json.dumps(identity, sort_keys=True).encode() + b"\n"
         if os.pread(self._file, len(first), 0) != first:
             os.ftruncate(self._file, 0)

@@ -1,7 +1,6 @@
 """Results on disk: one JSON line a trial, appended as they come, so that a killed sweep loses nothing."""
 
 import csv
-import fcntl
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -11,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from wnn2hdl.errors import InputError
+from wnn2hdl.ir.files import open_alone
 from wnn2hdl.sweep.trial import COLUMNS, Record
 
 
@@ -35,17 +34,7 @@ class Results:
         self._path = path
         self._position = position
         self._offsets = np.full(size, -1, dtype=np.int64)
-        try:
-            self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-        except OSError as error:
-            raise InputError("cannot write the results", value=f"{path} ({error.strerror})") from error
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            os.close(self._file)
-            raise InputError(
-                "another sweep is writing to the same folder", value=path.parent, mend="choose another one"
-            ) from error
+        self._file = open_alone(path, "sweep", os.O_APPEND)
         self._reader = path.open("rb")
         self._end = self._scan()
         os.ftruncate(self._file, self._end)

@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import pytest
@@ -77,3 +78,14 @@ def test_a_number_too_long_for_python_gets_one_line(tmp_path: Path) -> None:
     path.write_text('{"a": ' + "9" * 5000 + "}")
     with pytest.raises(ModelFileError, match="not a model, or a damaged one"):
         files.read_json(path, "a model")
+
+
+def test_a_file_is_open_in_one_place_at_a_time(tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    first = files.open_alone(path, "scan")
+    with pytest.raises(InputError, match=f"another scan is writing to the same folder: {tmp_path}"):
+        files.open_alone(path, "scan")
+    os.close(first)
+    os.close(files.open_alone(path, "scan"))
+    with pytest.raises(InputError, match=r"cannot write the scan: .*No such file"):
+        files.open_alone(tmp_path / "none" / "journal", "scan")

@@ -84,7 +84,7 @@ def test_a_second_writer_is_refused(tmp_path: Path, plan: Plan) -> None:
 
 
 def test_a_missing_folder_is_refused(tmp_path: Path, plan: Plan) -> None:
-    with pytest.raises(InputError, match="cannot write the results"):
+    with pytest.raises(InputError, match="cannot write the sweep"):
         opened(tmp_path / "none" / "r.jsonl", plan)
 
 
