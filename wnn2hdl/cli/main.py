@@ -33,6 +33,10 @@ def app() -> None:
       wnn2hdl compile model.json -o build/mine
 
     `wnn2hdl doctor` tells which tools are here, `wnn2hdl COMMAND --help` what a command takes.
+
+    
+    For completion by the Tab key in bash (zsh and fish likewise), put into ~/.bashrc:
+      eval "$(_WNN2HDL_COMPLETE=bash_source wnn2hdl)"
     """
 
 

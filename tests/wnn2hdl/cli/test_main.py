@@ -9,8 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.shell_completion import BashComplete
 from numpy.typing import NDArray
 from PIL import Image
+
+from wnn2hdl.cli import main  # noqa: F401  # importing it registers all commands
+from wnn2hdl.cli.main import app
 
 COMMAND = [sys.executable, "-c", "import sys; from wnn2hdl.cli import main; sys.exit(main())"]
 
@@ -163,3 +167,12 @@ def test_the_shell_completes_commands(monkeypatch: pytest.MonkeyPatch) -> None:
         check=False,
     )
     assert "compile" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("before", "begun", "offered"),
+    [([], "sc", ["scan"]), (["compile"], "--mod", ["--mode"]), (["compile", "--mode"], "d", ["domain"])],
+)
+def test_the_tab_key_completes(before: list[str], begun: str, offered: list[str]) -> None:
+    completion = BashComplete(app, {}, "wnn2hdl", "_WNN2HDL_COMPLETE")
+    assert [item.value for item in completion.get_completions(before, begun)] == offered
