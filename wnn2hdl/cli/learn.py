@@ -39,6 +39,7 @@ class Discriminators:
     address_bits: int | None
     rams: int | None
     bleach: int | str | None
+    balance: bool | None
 
     def train(self, dataset: Dataset, seed: int, report: Progress) -> WisardModel:
         """Train with these options, or the reference design's where they were left out."""
@@ -48,6 +49,7 @@ class Discriminators:
             address_bits=self.address_bits or 4,
             rams=self.rams or 16,
             bleaching=self.bleach if isinstance(self.bleach, int) else None,
+            balanced=bool(self.balance),
             seed=seed,
             progress=report,
         )
@@ -76,6 +78,12 @@ class Discriminators:
     "--bleach",
     type=BleachingType(),
     help="Bleaching threshold; auto: cross-validated by image.  [default: auto]",
+)
+@click.option(
+    "--balance",
+    is_flag=True,
+    default=None,
+    help="Let all classes weigh alike, however many pixels they have, so that rare ones are found.",
 )
 @click.option(
     "--max-luts", type=click.IntRange(min=1), help="The most accurate classifier of so many LUTs a pixel."

@@ -51,6 +51,7 @@ def train(
     address_bits: int,
     rams: int,
     bleaching: int | None,
+    balanced: bool = False,
     seed: int,
     progress: Progress,
 ) -> WisardModel:
@@ -62,6 +63,8 @@ def train(
         address_bits: n, address bits of a RAM.
         rams: k, RAMs of a discriminator.
         bleaching: the threshold; None chooses it by cross-validation by image, on these images alone.
+        balanced: count the pixels of every class as many times as makes all classes alike. Without it one
+            bleaching threshold serves frequent classes and silences rare ones.
         seed: of the tuple mapping.
         progress: told of each image read.
 
@@ -70,14 +73,25 @@ def train(
     """
     mapping = draw_mapping(encoder.width, rams, address_bits, seed)
     histograms = image_histograms(dataset, encoder, progress)
+    pixels = int(histograms.sum())
+    if balanced:
+        histograms = _balanced(histograms)
     threshold = choose_bleaching(histograms, mapping) if bleaching is None else bleaching
     training = {
         "seed": seed,
         "images": list(dataset.names),
-        "pixels": int(histograms.sum()),
+        "pixels": pixels,
         "bleaching": "auto" if bleaching is None else "given",
+        "balanced": balanced,
     }
     return train_histogram(histograms.sum(axis=0), encoder, dataset.classes, mapping, threshold, training)
+
+
+def _balanced(histograms: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Histograms whose classes all have about as many counts as the largest of them."""
+    totals = histograms.sum(axis=(0, 2))
+    shares = totals.max() / totals
+    return np.asarray(np.rint(histograms * shares[None, :, None]), dtype=np.int64)
 
 
 def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> WisardModel:

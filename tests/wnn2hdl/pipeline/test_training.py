@@ -64,3 +64,26 @@ def test_a_model_remembers_the_colours_it_was_shown() -> None:
     assert remembering.colours is not None
     assert np.array_equal(remembering.colours, np.unique(COLOURS.codes(shown)))
     assert remembering.digest() == model.digest()
+
+
+def test_balanced_classes_weigh_alike_so_that_a_rare_one_is_found() -> None:
+    pixels = np.repeat(np.array([[0, 0, 0], [255, 0, 0], [255, 255, 0]], dtype=np.uint8), [90, 9, 1], axis=0)
+    labels = np.repeat(np.array([0, 0, 1], dtype=np.uint8), [90, 9, 1])
+    dataset = Dataset(CLASSES, ("a",), lambda name: LabelledImage(name, pixels, labels))
+    found = {
+        balanced: train(
+            dataset,
+            parse_bits("R7,G7"),
+            address_bits=2,
+            rams=1,
+            bleaching=5,
+            balanced=balanced,
+            seed=0,
+            progress=silent,
+        )
+        for balanced in (False, True)
+    }
+    bits = parse_bits("R7,G7").codes(pixels[-1:])
+    assert [int(model.evaluate_all_codes()[bits][0]) for model in found.values()] == [0, 1]
+    assert [int(model.counts[1].sum()) for model in found.values()] == [1, 99]
+    assert [model.training["pixels"] for model in found.values()] == [100, 100]
