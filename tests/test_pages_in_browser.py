@@ -189,6 +189,22 @@ def test_nothing_sticks_out_of_the_window(open_page: Callable[..., Page], folder
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
+@pytest.mark.parametrize("width", [360, 1180])
+def test_many_classes_do_not_stick_out_either(
+    open_page: Callable[..., Page], write_build: Callable[..., Path], tmp_path: Path, width: int
+) -> None:
+    folder = write_build(tmp_path / "kinds")
+    report = json.loads((folder / "report.json").read_text())
+    report["model"]["classes"] = [f"kind of ground {number}" for number in range(8)]
+    report["confusion"] = [[123_456] * 8] * 8
+    (folder / "report.json").write_text(json.dumps(report))
+    write_page(folder)
+    page = open_page(folder / "report.html")
+    page.set_viewport_size({"width": width, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.locator("table.confusion td[style]").count() == 64
+
+
 def test_texts_stand_out_from_their_ground(open_page: Callable[..., Page], folder: Path) -> None:
     # WCAG 2.1, contrast of 4.5 to 1 for text; the variables are all the colours that the page has.
     script = """() => {

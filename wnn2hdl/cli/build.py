@@ -6,10 +6,11 @@ from typing import Any, get_args
 import click
 
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder
+from wnn2hdl.cli.options import file, folder, palette_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.dataset import from_masks
 from wnn2hdl.errors import CheckError, InputError
+from wnn2hdl.images import Palette
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.compile import compile_model, require_luts
 from wnn2hdl.pipeline.design import Mode, Style, Target
@@ -74,6 +75,7 @@ from wnn2hdl.pipeline.planning import CompileOptions
 )
 @click.option("--test-images", type=folder, help="Pictures for the accuracies in the report.")
 @click.option("--test-masks", type=folder, help="Masks of --test-images.")
+@palette_option
 @click.option("--max-luts", type=click.IntRange(min=0), help="Fail if the target takes more LUTs.")
 @json_option
 def compile_command(
@@ -82,6 +84,7 @@ def compile_command(
     max_luts: int | None,
     test_images: Path | None,
     test_masks: Path | None,
+    palette: Path | None,
     as_json: bool,
     **choices: Any,
 ) -> None:
@@ -98,7 +101,11 @@ def compile_command(
         raise InputError(
             "these options go together", value="--test-images and --test-masks", mend="give both"
         )
-    test_set = from_masks(test_images, test_masks) if test_images and test_masks else None
+    if palette and not test_masks:
+        raise InputError("a palette belongs to masks", value=palette, mend="give --test-masks too")
+    test_set = None
+    if test_images and test_masks:
+        test_set = from_masks(test_images, test_masks, Palette.read(palette) if palette else None)
     with progress() as report:
         build = compile_model(WisardModel.load(model), output, options, report, test_set)
     emit(build.report, parts_table(build.report, build.folder), as_json=as_json)

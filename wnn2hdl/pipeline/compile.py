@@ -18,7 +18,7 @@ from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import GENERATORS, emit
 from wnn2hdl.pipeline.classifiers import circuit_classifier, model_classifier
 from wnn2hdl.pipeline.design import Design
-from wnn2hdl.pipeline.evaluation import evaluate
+from wnn2hdl.pipeline.evaluation import evaluate, require_same_classes
 from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
 from wnn2hdl.pipeline.planning import CompileOptions, Plan, plan
 from wnn2hdl.pipeline.reporting import command, model_figures, sample_picture, write_page
@@ -86,9 +86,12 @@ def compile_model(
         test_set: labelled images for the accuracies in the report.
 
     Raises:
-        InputError: the model or the imagery cannot be used, or the folder cannot be written.
+        InputError: the model or the imagery cannot be used, the test set has other classes, or the folder
+            cannot be written.
         ToolError: an outside program is missing or failed.
     """
+    if test_set is not None:
+        require_same_classes(model.classes, test_set)
     clock = _Clock()
     with staged(folder) as staging:
         with clock.stage("plan"):

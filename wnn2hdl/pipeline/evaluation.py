@@ -44,6 +44,16 @@ class Evaluation:
         return float(self.covered.sum() / self.confusion.sum())
 
 
+def require_same_classes(classes: tuple[str, ...], dataset: Dataset) -> None:
+    """Refuse labels of other classes than a model's, or in another order; raises InputError."""
+    if classes != dataset.classes:
+        raise InputError(
+            "the model and the masks have different classes",
+            value=f"{', '.join(classes)} / {', '.join(dataset.classes)}",
+            mend="give the masks a palette of the model's classes in their order",
+        )
+
+
 def evaluate(classifier: "PictureClassifier", dataset: Dataset, progress: Progress) -> Evaluation:
     """Compare a classifier's answers with the labels of images.
 
@@ -58,12 +68,7 @@ def evaluate(classifier: "PictureClassifier", dataset: Dataset, progress: Progre
         InputError: an image cannot be read, the classes are not those of the labels, or the classifier looks
             at neighbours and an image has only some of its pixels labelled.
     """
-    if classifier.classes != dataset.classes:
-        raise InputError(
-            "the model and the masks have different classes",
-            value=f"{', '.join(classifier.classes)} / {', '.join(dataset.classes)}",
-            mend="give the masks a palette of the model's classes in their order",
-        )
+    require_same_classes(classifier.classes, dataset)
     classes = len(dataset.classes)
     confusion = np.zeros((len(dataset), classes, classes), dtype=np.int64)
     covered = np.zeros(len(dataset), dtype=np.int64)

@@ -1,10 +1,12 @@
 """A compiled model: all files, proved, counted, or nothing."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from wnn2hdl.dataset import from_samples
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.ir import LutNetwork, WisardModel
 from wnn2hdl.pipeline.checking import Checked, check
@@ -90,6 +92,17 @@ def test_a_wrong_circuit_does_not_leave_unnoticed(
 def test_a_failing_compile_leaves_no_folder(model: WisardModel, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--care"):
         compile_model(model, tmp_path / "block", CompileOptions(mode="domain"), silent)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_labels_of_other_classes_are_refused_before_the_work(model: WisardModel, tmp_path: Path) -> None:
+    steps: list[str] = []
+    others = replace(from_samples(1, 32, seed=5), classes=("forest", "burnt soil"))
+    with pytest.raises(InputError, match="different classes: forest, deforested / forest, burnt soil"):
+        compile_model(
+            model, tmp_path / "block", CompileOptions(), lambda step, *_: steps.append(step), others
+        )
+    assert steps == []
     assert list(tmp_path.iterdir()) == []
 
 
