@@ -45,6 +45,8 @@ def accepted(grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | N
     The threshold lies in the middle between the least confidence to be accepted and the next lower one of a
     wrong match, as nothing is known of what lies between them. Where no threshold is expected to make
     `PRECISION` of the fixes right, none are given.
+
+    Matches below the threshold are doubted by as much as those of these frames were wrong, by Laplace's rule.
     """
     known = [(pose, at) for pose, at in zip(poses, located, strict=True) if at]
     if not known:
@@ -61,17 +63,26 @@ def accepted(grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | N
     confidences = [at.match.confidence for _, at in known]
     acceptance = choose_threshold(confidences, errors, wrong, precision=PRECISION)
     if acceptance.precision < PRECISION:
-        return Acceptance(math.inf, 0.0, 0.0)
+        return Acceptance(math.inf, 0.0, 0.0, _share_right(errors))
     missed = [confidence for confidence, error in zip(confidences, errors, strict=True) if error >= FAR_M]
     below = [confidence for confidence in (*wrong, *missed) if confidence < acceptance.threshold]
     middle = (acceptance.threshold + max(below)) / 2 if below else acceptance.threshold
-    return replace(acceptance, threshold=middle)
+    refused = [error for confidence, error in zip(confidences, errors, strict=True) if confidence < middle]
+    return replace(acceptance, threshold=middle, doubted=_share_right(refused))
+
+
+def _share_right(errors_m: Sequence[float]) -> float:
+    return (sum(error < FAR_M for error in errors_m) + 1) / (len(errors_m) + 2)
 
 
 def tracked(
-    grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | None], half_width_m: float | None
+    grid: MapGrid,
+    poses: Sequence[Pose],
+    located: Sequence[Located | None],
+    acceptance: Acceptance,
+    half_width_m: float | None,
 ) -> tuple[FrameFix, ...]:
-    """The positions of a filter that takes all frames' peaks in turn.
+    """The positions of a filter that takes all frames' peaks in turn, gated by confidence.
 
     Its confidence in a position is the probability that it is right, off by less than `FAR_M`; from
     `PRECISION` on the position is given as a fix. Where the filter knows nothing, before its
@@ -79,7 +90,7 @@ def tracked(
     """
     offered = [
         [
-            Fix(east, north, weight=weight)
+            Fix(east, north, weight=weight * acceptance.trust(at.match.confidence))
             for (east, north), weight in zip(at.places, peak_weights(at.match), strict=True)
         ]
         if at

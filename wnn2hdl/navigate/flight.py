@@ -124,7 +124,7 @@ def run_flight(
             acceptance = accepted(grid, calibrating, [one[place] for one in known])
             located = [one[place] for one in found]
             rows.append(MethodResult(method.title, fixes(grid, recording.poses, located, acceptance)))
-            track = tracked(grid, recording.poses, located, half)
+            track = tracked(grid, recording.poses, located, acceptance, half)
             tracks.append(MethodResult(f"{method.title}, track", track, tracked=True))
             acceptances[place] = acceptance
         searched.append(SearchResult(kind, half, (*rows, *tracks)))

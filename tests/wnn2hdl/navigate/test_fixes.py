@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from wnn2hdl.navigate.fixes import accepted, fixes, tracked
+from wnn2hdl.navigate.fixes import UNCALIBRATED, accepted, fixes, tracked
 from wnn2hdl.navigate.matching import Acceptance, Match, Peak
 from wnn2hdl.navigate.navigator import Located
 from wnn2hdl.navigate.poses import Pose
@@ -52,6 +52,7 @@ def test_the_threshold_parts_right_from_wrong() -> None:
     acceptance = accepted(GRID, poses, [*right, *wrong])
     assert acceptance.accepts(right[0].match.confidence)
     assert not acceptance.accepts(wrong[0].match.confidence)
+    assert acceptance.doubted == (0 + 1) / (2 + 2)
 
 
 def test_the_threshold_lies_between_wrong_and_right() -> None:
@@ -67,6 +68,7 @@ def test_no_fix_is_given_where_confidence_tells_nothing() -> None:
     wrong = located((300, 300), (1, 1), heights=(5, 4))
     acceptance = accepted(GRID, [pose(0, 0)] * 10, [right, wrong] * 5)
     assert not acceptance.accepts(1e9)
+    assert acceptance.doubted == (5 + 1) / (10 + 2)
 
 
 def test_without_matches_every_position_is_given() -> None:
@@ -79,7 +81,7 @@ def test_a_track_overrules_a_stray_match() -> None:
     matches: list[Located | None] = [located((20.0 * i, 0.0), heights=(8,)) for i in range(10)]
     matches[6] = located((-300.0, 300.0), (121.0, 1.0), heights=(5, 4.8))
     matches[8] = None
-    track = tracked(GRID, poses, matches, None)
+    track = tracked(GRID, poses, matches, UNCALIBRATED, None)
     assert track[6].error_m is not None
     assert track[6].error_m < 20
     assert track[8].error_m is not None
@@ -94,10 +96,22 @@ def test_a_track_through_doubtful_matches_is_no_fix_until_they_agree() -> None:
         located((20.0 * i, 0.0), (300.0 - 90 * (i % 5), 300.0 * (-1) ** i), heights=(4.5, 4.2))
         for i in range(9)
     ]
-    track = tracked(GRID, poses, doubtful, None)
+    track = tracked(GRID, poses, doubtful, UNCALIBRATED, None)
     assert not track[0].fixed
     assert track[8].fixed
     assert 0 <= track[0].confidence < track[8].confidence <= 1
+
+
+def test_a_track_through_matches_below_the_threshold_is_believed_less() -> None:
+    poses = [pose(20 * i, 0, i) for i in range(4)]
+    matches = [located((20.0 * i, 0.0), (300.0, 300.0 * (-1) ** i), heights=(6, 3)) for i in range(4)]
+    believed, doubted = (
+        tracked(GRID, poses, matches, acceptance, None)
+        for acceptance in (Acceptance(5, 1, 1, 0.3), Acceptance(50, 1, 1, 0.3))
+    )
+    assert believed[0].fixed
+    assert not doubted[0].fixed
+    assert doubted[0].confidence < doubted[3].confidence < believed[3].confidence
 
 
 def test_a_track_that_starts_at_a_wrong_match_is_no_fix() -> None:
@@ -107,4 +121,4 @@ def test_a_track_that_starts_at_a_wrong_match_is_no_fix() -> None:
         located(*map(tuple, rng.uniform(-480, 480, (3, 2))), heights=(4.4, 4.2, 4.1)) for _ in poses
     ]
     for half_width_m in (None, 95.0):
-        assert not any(fix.fixed for fix in tracked(GRID, poses, strays, half_width_m))
+        assert not any(fix.fixed for fix in tracked(GRID, poses, strays, UNCALIBRATED, half_width_m))

@@ -28,15 +28,21 @@ class Acceptance:
         threshold: the least confidence.
         precision: expected share of right fixes among those that are given, 0 to 1.
         share: share of the calibration's frames that would be fixed, 0 to 1.
+        doubted: expected share of right ones among matches below the threshold, 0 to 1.
     """
 
     threshold: float
     precision: float
     share: float
+    doubted: float = 1.0
 
     def accepts(self, confidence: float) -> bool:
         """Whether a fix of this confidence is given."""
         return confidence >= self.threshold
+
+    def trust(self, confidence: float) -> float:
+        """The share of its weight that a match of this confidence keeps in a filter over the track."""
+        return 1.0 if self.accepts(confidence) else self.doubted
 
 
 def choose_threshold(
