@@ -1,5 +1,6 @@
 """Fixtures that more than one part of the suite needs."""
 
+import signal
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +9,11 @@ from typing import Any
 import pytest
 
 REAL_DATA = Path(__file__).parents[2] / "shared" / "data"
+
+
+def pytest_sessionstart() -> None:
+    """Let Ctrl-C reach the tests of it: what a shell starts in the background ignores it."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
