@@ -1,5 +1,8 @@
 """The errors a user can cause: each names the fault, the value at fault and the mend, on one line."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class Wnn2hdlError(Exception):
     """The root of every error this project raises on purpose.
@@ -34,6 +37,23 @@ class ModelFileError(InputError):
 
 class ExtraMissingError(Wnn2hdlError):
     """An optional package is needed; the mend names the extra to install."""
+
+
+@contextmanager
+def extra_needed(extra: str, need: str) -> Iterator[None]:
+    """Around the imports of an optional extra's packages.
+
+    Args:
+        extra: the extra that brings them, as in ``pip install 'wnn2hdl[geo]'``.
+        need: what needs which package, for the user: ``"polygons need shapely"``.
+
+    Raises:
+        ExtraMissingError: one of them cannot be imported.
+    """
+    try:
+        yield
+    except ImportError as error:
+        raise ExtraMissingError(need, mend=f"install it with: pip install 'wnn2hdl[{extra}]'") from error
 
 
 class ToolError(Wnn2hdlError):

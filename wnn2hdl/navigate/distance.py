@@ -9,7 +9,7 @@ east-west): 100.56 to 99.89 m at the equator, 100.39 to 99.83 m at latitude 24, 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.errors import extra_needed
 
 EARTH_RADIUS_M = 6_371_008.8
 """Mean radius R1 = (2 a + b) / 3 of the WGS 84 ellipsoid (IUGG)."""
@@ -51,12 +51,8 @@ def geodesic_m(
     Raises:
         ExtraMissingError: pyproj is not installed.
     """
-    try:
+    with extra_needed("geo", "geodesics need pyproj"):
         from pyproj import Geod
-    except ImportError as error:
-        raise ExtraMissingError(
-            "geodesics need pyproj", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     from_lon, from_lat, to_lon, to_lat = (
         np.array(axis, dtype=np.float64)
         for axis in np.broadcast_arrays(longitude_1, latitude_1, longitude_2, latitude_2)

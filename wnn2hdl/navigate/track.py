@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from scipy.special import chndtr
 
-from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.navigate.results import FAR_M
 
 GATE = 13.8
@@ -168,12 +168,8 @@ def _branches(
 
 def _start(fix: Fix) -> Any:
     """A filter of the state (east, east velocity, north, north velocity) that stands at a fix."""
-    try:
+    with extra_needed("geo", "the track filter needs filterpy"):
         from filterpy.kalman import KalmanFilter
-    except ImportError as error:
-        raise ExtraMissingError(
-            "the track filter needs filterpy", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     kalman = KalmanFilter(dim_x=4, dim_z=2)
     kalman.x = np.array([[fix.east_m], [0.0], [fix.north_m], [0.0]])
     kalman.P = np.diag([fix.std_m**2, SPEED_STD_M**2, fix.std_m**2, SPEED_STD_M**2])

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.ir.window import SIDE
 
 if TYPE_CHECKING:
@@ -344,13 +344,8 @@ def _transformer(crs: str) -> "Transformer":
 
 
 def _rasterio() -> Any:
-    try:
+    with extra_needed("geo", "georeferenced maps need rasterio and pyproj"):
         import pyproj  # noqa: F401  # fails here rather than later
         import rasterio
         import rasterio.errors
-    except ImportError as error:
-        raise ExtraMissingError(
-            "georeferenced maps need rasterio and pyproj",
-            mend="install them with: pip install 'wnn2hdl[geo]'",
-        ) from error
     return rasterio

@@ -4,7 +4,7 @@ from collections.abc import Callable, Generator, Iterable
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
-from wnn2hdl.errors import ExtraMissingError, ToolError, Wnn2hdlError
+from wnn2hdl.errors import ToolError, Wnn2hdlError, extra_needed
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -51,12 +51,8 @@ def run_on_cluster(
         ToolError: no scheduler answers, it has no workers, or one of them cannot run jobs at all.
         Wnn2hdlError: what ``function`` raises of this kind.
     """
-    try:
+    with extra_needed("cluster", "running on a cluster needs Dask"):
         from distributed import Client
-    except ImportError as error:
-        raise ExtraMissingError(
-            "running on a cluster needs Dask", mend="install it with: pip install 'wnn2hdl[cluster]'"
-        ) from error
     try:
         client = Client(scheduler, timeout=_CONNECT_SECONDS)
     except (OSError, ValueError) as error:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.errors import InputError, extra_needed
 
 PICTURE_DRIVERS = ("JPEG", "PNG", "BMP")
 """GDAL's names of the formats of plain pictures: not georeferenced, not readable in windows at random."""
@@ -102,10 +102,6 @@ def open_raster(rasterio: Any, path: Path, mode: str = "r", **profile: Any) -> A
 
 
 def _rasterio() -> Any:
-    try:
+    with extra_needed("geo", "rasters are read and written with rasterio"):
         import rasterio
-    except ImportError as error:
-        raise ExtraMissingError(
-            "rasters are read and written with rasterio", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     return rasterio

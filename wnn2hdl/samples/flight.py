@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.ir.files import make_folder, write_bytes, write_text
 from wnn2hdl.samples.country import GROUND_SAMPLE_DISTANCE_M, paint
 from wnn2hdl.samples.georeference import EPSG, NORTH, WEST, Grid
@@ -245,13 +245,9 @@ def _fly(
 
 
 def _geotiff(flight: Flight) -> bytes:
-    try:
+    with extra_needed("geo", "a map needs rasterio"):
         from rasterio.io import MemoryFile
         from rasterio.transform import Affine
-    except ImportError as error:
-        raise ExtraMissingError(
-            "a map needs rasterio", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     height, width, bands = flight.map_image.shape
     profile = {
         "driver": "GTiff",

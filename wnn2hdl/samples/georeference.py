@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.errors import extra_needed
 
 EPSG = 32720
 """UTM zone 20 south."""
@@ -34,12 +34,8 @@ class Grid:
         Raises:
             ExtraMissingError: pyproj is not installed.
         """
-        try:
+        with extra_needed("geo", "a flight needs pyproj"):
             import pyproj
-        except ImportError as error:
-            raise ExtraMissingError(
-                "a flight needs pyproj", mend="install it with: pip install 'wnn2hdl[geo]'"
-            ) from error
         self._projection: Any = pyproj.Proj(EPSG)
 
     def degrees(self, east: float, north: float) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import ExtraMissingError, InputError
+from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.raster import Georeference
 
 if TYPE_CHECKING:
@@ -93,12 +93,8 @@ def to_degrees(crs: str) -> "Transformer":
     Raises:
         ExtraMissingError: pyproj is not installed.
     """
-    try:
+    with extra_needed("geo", "areas on the ellipsoid need pyproj"):
         from pyproj import Transformer
-    except ImportError as error:
-        raise ExtraMissingError(
-            "areas on the ellipsoid need pyproj", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     return Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.errors import extra_needed
 from wnn2hdl.raster import Georeference
 from wnn2hdl.scan.ellipsoid import to_degrees
 
@@ -120,12 +120,8 @@ def _to_map(dataset: "DatasetReader") -> Callable[[NDArray[np.float64]], NDArray
 @contextmanager
 def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> Iterator[Write]:
     """A table ``regions`` of polygons in the raster's coordinate system; arguments as for `geojson`."""
-    try:
+    with extra_needed("geo", "GeoPackage needs pyogrio"):
         from pyogrio import raw, set_gdal_config_options
-    except ImportError as error:
-        raise ExtraMissingError(
-            "GeoPackage needs pyogrio", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     shapely = _shapely()
     located = Georeference.of(dataset).located
     to_map = _to_map(dataset)
@@ -165,12 +161,8 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
 
 
 def _shapely() -> Any:
-    try:
+    with extra_needed("geo", "polygons need shapely"):
         import shapely
-    except ImportError as error:
-        raise ExtraMissingError(
-            "polygons need shapely", mend="install it with: pip install 'wnn2hdl[geo]'"
-        ) from error
     return shapely
 
 

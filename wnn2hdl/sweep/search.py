@@ -5,7 +5,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from wnn2hdl.errors import ExtraMissingError
+from wnn2hdl.errors import extra_needed
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.sweep.grid import Recipe, Trial
 from wnn2hdl.sweep.pixels import PixelSets
@@ -41,12 +41,8 @@ def require_optuna() -> ModuleType:
     Raises:
         ExtraMissingError: it is not installed.
     """
-    try:
+    with extra_needed("search", "the search needs Optuna"):
         return import_module("optuna")
-    except ImportError as error:
-        raise ExtraMissingError(
-            "the search needs Optuna", mend="install it with: pip install 'wnn2hdl[search]'"
-        ) from error
 
 
 def search(
