@@ -1,25 +1,18 @@
 """`wnn2hdl locate`: its bad input, and a run on the embedded flight."""
 
 import json
-import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from wnn2hdl.cli import locate, main  # noqa: F401  # importing the module registers its command
 from wnn2hdl.navigate import recording
 from wnn2hdl.samples.flight import make_flight, write_flight
 
+Run = Callable[..., Any]
+
 POSE = "frame,latitude_deg,longitude_deg,height_above_ground_m,yaw_deg,pitch_deg,roll_deg\n"
-
-
-def run(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
-) -> tuple[int, str, str]:
-    monkeypatch.setattr(sys, "argv", ["wnn2hdl", "locate", *arguments])
-    status = main()
-    printed = capsys.readouterr()
-    return status, printed.out, printed.err
 
 
 @pytest.fixture(scope="module")
@@ -35,11 +28,9 @@ def given(folder: Path) -> list[str]:
     return [word for option, name in files.items() for word in (option, str(folder / name))]
 
 
-def test_files_are_located_and_written(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], folder: Path, tmp_path: Path
-) -> None:
+def test_files_are_located_and_written(run: Run, folder: Path, tmp_path: Path) -> None:
     arguments = [*given(folder), "--camera", str(folder / "camera.toml"), "--search", "map", "--json"]
-    status, printed, _ = run(monkeypatch, capsys, *arguments, "-o", str(tmp_path / "out"))
+    status, printed, _ = run("locate", *arguments, "-o", tmp_path / "out")
     assert status == 0
     data = json.loads(printed)
     assert data["frames"] == 5
@@ -49,24 +40,12 @@ def test_files_are_located_and_written(
     assert all(Path(path).is_file() for path in data["files"])
 
 
-def test_poses_of_a_file_calibrate_and_are_not_scored(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], folder: Path, tmp_path: Path
-) -> None:
+def test_poses_of_a_file_calibrate_and_are_not_scored(run: Run, folder: Path, tmp_path: Path) -> None:
     lines = (folder / "poses.csv").read_text().splitlines()
     some = tmp_path / "some.csv"
     some.write_text("\n".join([lines[0], *lines[1:4]]) + "\n")
-    arguments = [
-        *given(folder),
-        "--focal",
-        "120",
-        "--calibrate",
-        str(some),
-        "--search",
-        "window",
-        "--window",
-        "30",
-    ]
-    status, printed, _ = run(monkeypatch, capsys, *arguments, "--json", "-o", str(tmp_path / "out"))
+    arguments = [*given(folder), "--focal", 120, "--calibrate", some, "--search", "window", "--window", 30]
+    status, printed, _ = run("locate", *arguments, "--json", "-o", tmp_path / "out")
     assert status == 0
     data = json.loads(printed)
     assert data["frames"] == 2
@@ -75,13 +54,11 @@ def test_poses_of_a_file_calibrate_and_are_not_scored(
 
 
 def test_the_embedded_flight_needs_no_files(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(recording, "SAMPLE_MAP", (600, 600))
     monkeypatch.setattr(recording, "SAMPLE_FRAMES", 2)
-    status, printed, _ = run(
-        monkeypatch, capsys, "--window", "95", "--search", "window", "-o", str(tmp_path / "out")
-    )
+    status, printed, _ = run("locate", "--window", "95", "--search", "window", "-o", tmp_path / "out")
     assert status == 0
     assert "134 m" in printed
     assert "73 m" in printed
@@ -102,26 +79,19 @@ def test_the_embedded_flight_needs_no_files(
     ],
 )
 def test_bad_usage_is_one_line_and_status_2(
+    run: Run,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
     tmp_path: Path,
     arguments: list[str],
     fault: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    status, printed, told = run(monkeypatch, capsys, *arguments)
-    assert status == 2
-    assert printed == ""
-    assert fault in told.splitlines()[-1]
+    assert fault in run("locate", *arguments).complaint()
 
 
-def test_bad_files_are_one_line_and_status_2(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], folder: Path, tmp_path: Path
-) -> None:
+def test_bad_files_are_one_line_and_status_2(run: Run, folder: Path, tmp_path: Path) -> None:
     def refused(arguments: list[str], fault: str) -> None:
-        status, printed, told = run(monkeypatch, capsys, *arguments, "-o", str(tmp_path / "out"))
-        assert (status, printed) == (2, "")
-        assert fault in told.splitlines()[-1]
+        assert fault in run("locate", *arguments, "-o", tmp_path / "out").complaint()
 
     files = given(folder)
     refused(files, "nothing is known of the camera")

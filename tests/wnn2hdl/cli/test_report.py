@@ -2,29 +2,23 @@
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
 
-from wnn2hdl.cli import main
 from wnn2hdl.report import PartFigures, Parts, Proof
 
-Run = Callable[..., tuple[int, str, str]]
+Run = Callable[..., Any]
 
 
 @pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Run:
-    """Runs the command in a folder of its own: status, stdout, stderr."""
+def report(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
+    """The command in a folder of its own."""
     monkeypatch.chdir(tmp_path)
-
-    def call(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr("sys.argv", ["wnn2hdl", "report", *map(str, words)])
-        status = main()
-        captured = capsys.readouterr()
-        return status, captured.out, captured.err
-
-    return call
+    return partial(run, "report")
 
 
 @pytest.fixture
@@ -35,15 +29,15 @@ def builds(write_build: Callable[..., Path], tmp_path: Path) -> tuple[Path, Path
     return Path("build/a"), Path("build/b")
 
 
-def test_one_build_gets_its_page(run: Run, builds: tuple[Path, Path]) -> None:
-    status, out, _ = run(builds[0])
+def test_one_build_gets_its_page(report: Run, builds: tuple[Path, Path]) -> None:
+    status, out, _ = report(builds[0])
     assert (status, out) == (0, "build/a/report.html\n")
     assert Path("build/a/report.html").read_text().startswith("<!DOCTYPE html>")
     assert not Path("build/index.html").exists()
 
 
-def test_several_get_an_index_and_two_are_compared(run: Run, builds: tuple[Path, Path]) -> None:
-    status, out, _ = run(*builds)
+def test_several_get_an_index_and_two_are_compared(report: Run, builds: tuple[Path, Path]) -> None:
+    status, out, _ = report(*builds)
     assert (status, out.split()) == (0, ["build/a/report.html", "build/b/report.html", "build/index.html"])
     page = Path("build/index.html").read_text()
     assert "a and b compared" in page
@@ -51,87 +45,87 @@ def test_several_get_an_index_and_two_are_compared(run: Run, builds: tuple[Path,
 
 
 def test_any_two_of_several_are_compared(
-    run: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
+    report: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
 ) -> None:
     third = write_build(tmp_path / "c")
-    assert run(*builds, third, "-o", "pages/i.html", "--compare", third, builds[0])[0] == 0
+    assert report(*builds, third, "-o", "pages/i.html", "--compare", third, builds[0])[0] == 0
     page = Path("pages/i.html").read_text()
     assert "c and a compared" in page
     assert '<a href="../build/a/report.html">' in page
-    run(*builds, third, "-o", "pages/i.html")
+    report(*builds, third, "-o", "pages/i.html")
     assert "compared</h2>" not in Path("pages/i.html").read_text()
 
 
-def test_what_is_no_build_is_passed_over(run: Run, builds: tuple[Path, Path]) -> None:
+def test_what_is_no_build_is_passed_over(report: Run, builds: tuple[Path, Path]) -> None:
     Path("build/model.json").write_text("{}")
     Path("build/pictures").mkdir()
-    status, out, err = run(*sorted(Path("build").iterdir()))
+    status, out, err = report(*sorted(Path("build").iterdir()))
     assert status == 0
     assert "build/index.html" in out
     assert err == "wnn2hdl: passed over, since it is no build: build/model.json build/pictures\n"
 
 
 def test_a_baseline_holds_until_a_build_gets_worse(
-    run: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
+    report: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
 ) -> None:
-    assert run(*builds, "--write-baseline", "ci/baseline.json")[0] == 0
+    assert report(*builds, "--write-baseline", "ci/baseline.json")[0] == 0
     gate = ("--baseline", "ci/baseline.json")
-    status, out, err = run(*builds, *gate)
+    status, out, err = report(*builds, *gate)
     assert (status, err) == (0, "")
     assert "14 of 14 checks passed" in out
     worse = write_build(tmp_path / "new" / "a", accuracy=0.89)
-    status, _, err = run(worse, builds[1], *gate)
+    status, _, err = report(worse, builds[1], *gate)
     assert status == 1
     assert err == "wnn2hdl: 1 of 14 checks failed: a, accuracy: 0.89, in the baseline 0.9\n"
-    status, _, err = run(builds[0], *gate)
+    status, _, err = report(builds[0], *gate)
     assert status == 1
     assert "b, build: in the baseline, but not among the builds" in err
 
 
-def test_recording_leaves_an_index_alone(run: Run, builds: tuple[Path, Path]) -> None:
+def test_recording_leaves_an_index_alone(report: Run, builds: tuple[Path, Path]) -> None:
     Path("build/index.html").write_text("of the demo")
-    assert run(*builds, "--write-baseline", "baseline.json")[0] == 0
+    assert report(*builds, "--write-baseline", "baseline.json")[0] == 0
     assert Path("build/index.html").read_text() == "of the demo"
-    run(*builds, "--write-baseline", "baseline.json", "-o", "pages.html")
+    report(*builds, "--write-baseline", "baseline.json", "-o", "pages.html")
     assert Path("pages.html").is_file()
 
 
 def test_luts_may_rise_as_far_as_allowed(
-    run: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
+    report: Run, builds: tuple[Path, Path], write_build: Callable[..., Path], tmp_path: Path
 ) -> None:
-    run(builds[0], "--write-baseline", "baseline.json")
+    report(builds[0], "--write-baseline", "baseline.json")
     now = json.loads(Path("build/a/report.json").read_text())["parts"]
     now["block"]["luts"] += 2
     parts = Parts(**{part: PartFigures(**figures) for part, figures in now.items()})
     more = write_build(tmp_path / "new" / "a", parts=parts)
     gate = (more, "--baseline", "baseline.json")
-    assert run(*gate)[0] == 1
-    assert run(*gate, "--max-regress", 1)[0] == 1
-    assert run(*gate, "--max-regress", 2)[0] == 0
+    assert report(*gate)[0] == 1
+    assert report(*gate, "--max-regress", 1)[0] == 1
+    assert report(*gate, "--max-regress", 2)[0] == 0
 
 
-def test_limits_need_no_baseline(run: Run, builds: tuple[Path, Path]) -> None:
-    assert run(*builds, "--min-accuracy", 0.9, "--max-luts", 10**6)[0] == 0
-    assert run(*builds, "--min-accuracy", 0.905)[0] == 1
-    assert run(*builds, "--max-luts", 1)[0] == 1
+def test_limits_need_no_baseline(report: Run, builds: tuple[Path, Path]) -> None:
+    assert report(*builds, "--min-accuracy", 0.9, "--max-luts", 10**6)[0] == 0
+    assert report(*builds, "--min-accuracy", 0.905)[0] == 1
+    assert report(*builds, "--max-luts", 1)[0] == 1
     assert "✗ failed" in Path("build/index.html").read_text()
 
 
 def test_a_failed_build_fails_the_gate_and_is_not_recorded(
-    run: Run, write_build: Callable[..., Path], tmp_path: Path
+    report: Run, write_build: Callable[..., Path], tmp_path: Path
 ) -> None:
     folder = write_build(tmp_path / "a", proof=Proof("failed", "SAT", 0.5))
-    assert run(folder)[0] == 0
-    assert run(folder, "--max-luts", 10**6)[0] == 1
-    status, _, err = run(folder, "--write-baseline", "baseline.json")
+    assert report(folder)[0] == 0
+    assert report(folder, "--max-luts", 10**6)[0] == 1
+    status, _, err = report(folder, "--write-baseline", "baseline.json")
     assert status == 1
     assert "a build that is not proved makes no baseline: a" in err
     assert not Path("baseline.json").exists()
 
 
 @pytest.mark.parametrize("form", ["markdown", "json", "junit"])
-def test_formats_go_to_stdout_or_a_file(run: Run, builds: tuple[Path, Path], form: str) -> None:
-    status, out, _ = run(*builds, "--format", form)
+def test_formats_go_to_stdout_or_a_file(report: Run, builds: tuple[Path, Path], form: str) -> None:
+    status, out, _ = report(*builds, "--format", form)
     assert status == 0
     readers: dict[str, Callable[[str], object]] = {
         "markdown": lambda text: text.index("| a | ✓ passed |"),
@@ -140,20 +134,20 @@ def test_formats_go_to_stdout_or_a_file(run: Run, builds: tuple[Path, Path], for
     }
     readers[form](out)
     assert not Path("build/index.html").exists()
-    status, told, _ = run(*builds, "--format", form, "--max-luts", 1, "-o", "out/gate.txt")
+    status, told, _ = report(*builds, "--format", form, "--max-luts", 1, "-o", "out/gate.txt")
     assert status == 1
     readers[form](Path("out/gate.txt").read_text().replace("✗ failed", "✓ passed"))
     assert "✗ a, max-luts" in told
 
 
-def test_json_is_one_object_on_stdout_in_every_case(run: Run, builds: tuple[Path, Path]) -> None:
-    data = json.loads(run(*builds, "--json")[1])
+def test_json_is_one_object_on_stdout_in_every_case(report: Run, builds: tuple[Path, Path]) -> None:
+    data = json.loads(report(*builds, "--json")[1])
     assert data["passed"] is True
     assert data["checks"] == []
     assert data["written"] == ["build/a/report.html", "build/b/report.html", "build/index.html"]
-    status, out, _ = run(*builds, "--json", "--max-luts", 1)
+    status, out, _ = report(*builds, "--json", "--max-luts", 1)
     assert (status, json.loads(out)["passed"]) == (1, False)
-    out = run(*builds, "--json", "--format", "markdown", "-o", "gate.md")[1]
+    out = report(*builds, "--json", "--format", "markdown", "-o", "gate.md")[1]
     assert json.loads(out)["written"][-1] == "gate.md"
 
 
@@ -174,9 +168,6 @@ def test_json_is_one_object_on_stdout_in_every_case(run: Run, builds: tuple[Path
     ],
 )
 def test_bad_usage_gets_one_line(
-    run: Run, builds: tuple[Path, Path], words: tuple[str, ...], complaint: str
+    report: Run, builds: tuple[Path, Path], words: tuple[str, ...], complaint: str
 ) -> None:
-    status, out, err = run(*words)
-    assert (status, out) == (2, "")
-    assert complaint in err
-    assert len(err.splitlines()) == 1
+    assert complaint in report(*words).complaint()

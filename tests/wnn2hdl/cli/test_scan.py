@@ -6,19 +6,21 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from wnn2hdl.cli import main
 from wnn2hdl.ir import BitSelect, WisardModel
 from wnn2hdl.samples import landscape
 
 rasterio = pytest.importorskip("rasterio")
+
+Run = Callable[..., Any]
 
 COMMAND = [sys.executable, "-c", "import sys; from wnn2hdl.cli import main; sys.exit(main())", "scan"]
 
@@ -45,39 +47,13 @@ def picture(pixels: NDArray[np.uint8], tmp_path: Path) -> Path:
     return tmp_path / "picture.png"
 
 
-@dataclass(frozen=True)
-class Done:
-    """How a command ended."""
-
-    status: int
-    stdout: str
-    stderr: str
-
-
-Scan = Callable[..., Done]
-
-
 @pytest.fixture
-def scan(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Scan:
-    """Runs the command in this process, since starting one takes a second."""
-
-    def run(*words: object) -> Done:
-        monkeypatch.setattr(sys, "argv", ["wnn2hdl", "scan", *map(str, words)])
-        status = main()
-        printed = capsys.readouterr()
-        return Done(status, printed.out, printed.err)
-
-    return run
-
-
-def complaint(done: Done) -> str:
-    assert done.status == 2, done.stderr
-    assert done.stdout == ""
-    return done.stderr.splitlines()[-1]
+def scan(run: Run) -> Run:
+    return partial(run, "scan")
 
 
 def test_one_json_object_on_stdout(
-    scan: Scan, model: Path, picture: Path, pixels: NDArray[np.uint8], tmp_path: Path
+    scan: Run, model: Path, picture: Path, pixels: NDArray[np.uint8], tmp_path: Path
 ) -> None:
     done = scan(model, picture, "-o", tmp_path / "out", "--json", "--jobs", 1)
     assert done.status == 0, done.stderr
@@ -89,7 +65,7 @@ def test_one_json_object_on_stdout(
     assert (tmp_path / "out" / "overlay.png").exists()
 
 
-def test_foreign_imagery_is_warned_of_on_stderr(scan: Scan, model: Path, tmp_path: Path) -> None:
+def test_foreign_imagery_is_warned_of_on_stderr(scan: Run, model: Path, tmp_path: Path) -> None:
     Image.new("RGB", (40, 30)).save(tmp_path / "black.png")
     done = scan(model, tmp_path / "black.png", "-o", tmp_path / "out", "--square", 20)
     assert done.status == 0
@@ -97,37 +73,37 @@ def test_foreign_imagery_is_warned_of_on_stderr(scan: Scan, model: Path, tmp_pat
     assert "0.00% deforested" in done.stdout
 
 
-def test_a_sentinel_product_needs_bands_and_a_scale(scan: Scan, model: Path, tmp_path: Path) -> None:
+def test_a_sentinel_product_needs_bands_and_a_scale(scan: Run, model: Path, tmp_path: Path) -> None:
     bands = np.random.default_rng(0).integers(0, 4000, (4, 60, 50), dtype=np.uint16)
     place = {"crs": "EPSG:32720", "transform": rasterio.Affine(10, 0, 4e5, 0, -10, 9.1e6)}
     size = {"count": 4, "height": 60, "width": 50, "dtype": "uint16"}
     with rasterio.open(tmp_path / "s2.tif", "w", driver="GTiff", **size, **place) as target:
         target.write(bands)
     start = (model, tmp_path / "s2.tif", "-o", tmp_path / "out")
-    assert "say --bands" in complaint(scan(*start))
-    assert "say --scale" in complaint(scan(*start, "--bands", "3,2,1"))
+    assert "say --bands" in scan(*start).complaint()
+    assert "say --scale" in scan(*start, "--bands", "3,2,1").complaint()
     done = scan(*start, "--bands", "3,2,1", "--scale", "0:3000", "--json")
     scaled = np.clip(np.rint(bands[2] * (255 / 3000)), 0, 255)
     assert json.loads(done.stdout)["deforested"]["pixels"] == (scaled >= 96).sum()
 
 
-def test_bad_usage_is_one_line(scan: Scan, model: Path, picture: Path, tmp_path: Path) -> None:
+def test_bad_usage_is_one_line(scan: Run, model: Path, picture: Path, tmp_path: Path) -> None:
     start = (model, picture, "-o", tmp_path / "out")
-    assert "'3,2' is neither three band numbers" in complaint(scan(*start, "--bands", "3,2"))
-    assert "'9:1' does not rise" in complaint(scan(*start, "--scale", "9:1"))
-    assert "nan is no finite number" in complaint(scan(*start, "--share", "nan"))
-    assert "inf is no finite number" in complaint(scan(*start, "--minimum-area", "inf"))
-    assert "is not in the range" in complaint(scan(*start, "--square", 1_000_000))
-    assert "'low' is no pair" in complaint(scan(*start, "--scale", "low"))
-    assert "say the same" in complaint(scan(*start, "--minimum-area", 1, "--minimum-pixels", 9))
-    assert "--jobs is for this machine" in complaint(scan(*start, "--jobs", 1, "--scheduler", "tcp://a:1"))
-    assert "does not exist" in complaint(scan(model, tmp_path / "none.tif", "-o", tmp_path / "out"))
-    assert "not a model" in complaint(scan(picture, picture, "-o", tmp_path / "out"))
+    assert "'3,2' is neither three band numbers" in scan(*start, "--bands", "3,2").complaint()
+    assert "'9:1' does not rise" in scan(*start, "--scale", "9:1").complaint()
+    assert "nan is no finite number" in scan(*start, "--share", "nan").complaint()
+    assert "inf is no finite number" in scan(*start, "--minimum-area", "inf").complaint()
+    assert "is not in the range" in scan(*start, "--square", 1_000_000).complaint()
+    assert "'low' is no pair" in scan(*start, "--scale", "low").complaint()
+    assert "say the same" in scan(*start, "--minimum-area", 1, "--minimum-pixels", 9).complaint()
+    assert "--jobs is for this machine" in scan(*start, "--jobs", 1, "--scheduler", "tcp://a:1").complaint()
+    assert "does not exist" in scan(model, tmp_path / "none.tif", "-o", tmp_path / "out").complaint()
+    assert "not a model" in scan(picture, picture, "-o", tmp_path / "out").complaint()
     assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow
-def test_a_killed_scan_goes_on_and_ends_the_same(scan: Scan, model: Path, tmp_path: Path) -> None:
+def test_a_killed_scan_goes_on_and_ends_the_same(scan: Run, model: Path, tmp_path: Path) -> None:
     scene = tmp_path / "scene.tif"
     tile = np.moveaxis(landscape(512, 512, seed=1).image, 2, 0)
     place = {"crs": "EPSG:32720", "transform": rasterio.Affine(10, 0, 4e5, 0, -10, 9.1e6)}

@@ -1,15 +1,17 @@
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from wnn2hdl.cli import main, sweep  # noqa: F401  # importing the module registers its command
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.sweep import PixelSets, answers_digest, draw
 from wnn2hdl.sweep import run_sweep as real_sweep
 from wnn2hdl.sweep.trial import run_trials
+
+Run = Callable[..., Any]
 
 GRID = ("--n", "3..4", "--k", "5..6", "--trials", "2")
 
@@ -35,49 +37,32 @@ def small(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sets: PixelSets) -> N
     monkeypatch.chdir(tmp_path)
 
 
-def run(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
-) -> tuple[int, str, str]:
-    monkeypatch.setattr("sys.argv", ["wnn2hdl", "sweep", *arguments])
-    status = main()
-    captured = capsys.readouterr()
-    return status, captured.out, captured.err
-
-
-def test_json_tells_how_many_trials_there_were(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    status, out, _ = run(monkeypatch, capsys, *GRID, "-o", "out", "--json")
+def test_json_tells_how_many_trials_there_were(run: Run) -> None:
+    status, out, _ = run("sweep", *GRID, "-o", "out", "--json")
     assert status == 0
     assert json.loads(out)["trials"] == 8
     assert len(Path("out/trials.csv").read_text().splitlines()) == 9
 
 
-def test_pictures_and_page_lie_in_the_folder(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    status, out, _ = run(monkeypatch, capsys, *GRID)
+def test_pictures_and_page_lie_in_the_folder(run: Run) -> None:
+    status, out, _ = run("sweep", *GRID)
     assert status == 0
     assert out.startswith("build/sweep: 8 trials")
     names = {path.name for path in Path("build/sweep").iterdir()}
     assert {"index.html", "surface.svg", "surface.png", "pareto.svg", "finalists.png"} <= names
 
 
-def test_best_writes_the_model_of_the_best_trial_of_the_chosen_architecture(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    run(monkeypatch, capsys, *GRID, "-o", "out")
-    status, out, _ = run(monkeypatch, capsys, *GRID, "--results", "out", "--best", "-o", "m.json", "--json")
+def test_best_writes_the_model_of_the_best_trial_of_the_chosen_architecture(run: Run) -> None:
+    run("sweep", *GRID, "-o", "out")
+    status, out, _ = run("sweep", *GRID, "--results", "out", "--best", "-o", "m.json", "--json")
     assert status == 0
     best = json.loads(Path("out/summary.json").read_text())["best"]
     assert json.loads(out)["name"] == best["name"]
     assert answers_digest(WisardModel.load(Path("m.json"))) == best["answers"]
 
 
-def test_any_trial_is_rebuilt_without_a_sweep(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    status, out, _ = run(monkeypatch, capsys, "--trial", "n4-k16-t7", "-o", "m.json", "--json")
+def test_any_trial_is_rebuilt_without_a_sweep(run: Run) -> None:
+    status, out, _ = run("sweep", "--trial", "n4-k16-t7", "-o", "m.json", "--json")
     assert status == 0
     model = WisardModel.load(Path("m.json"))
     assert (model.address_bits, model.rams) == (4, 16)
@@ -97,14 +82,5 @@ def test_any_trial_is_rebuilt_without_a_sweep(
         (("--k", "0"), "'0' is no range of numbers"),
     ],
 )
-def test_bad_options_are_one_line_and_status_2(
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    arguments: tuple[str, ...],
-    complaint: str,
-) -> None:
-    status, out, err = run(monkeypatch, capsys, *arguments)
-    assert status == 2
-    assert out == ""
-    assert complaint in err
-    assert len(err.strip().splitlines()) == 1
+def test_bad_options_are_one_line_and_status_2(run: Run, arguments: tuple[str, ...], complaint: str) -> None:
+    assert complaint in run("sweep", *arguments).complaint()

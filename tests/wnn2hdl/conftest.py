@@ -1,4 +1,4 @@
-"""A small model and a build of it, shared by the tests of the pipeline."""
+"""A small model and builds of it, shared by tests of the pipeline and of its commands."""
 
 from pathlib import Path
 

@@ -1,0 +1,37 @@
+"""Commands run in this process, since starting one takes a second."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import pytest
+
+from wnn2hdl.cli import main
+
+
+class Done(NamedTuple):
+    """How a command ended."""
+
+    status: int
+    stdout: str
+    stderr: str
+
+    def complaint(self) -> str:
+        """The one line that tells of bad usage or bad input."""
+        assert self.status == 2, self.stderr
+        assert self.stdout == ""
+        assert "Traceback" not in self.stderr
+        (line,) = (line for line in self.stderr.splitlines() if line.startswith("wnn2hdl: "))
+        return line
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., Done]:
+    """``run("scan", model, picture, "--jobs", 1)`` gives a `Done`."""
+
+    def call(*words: object) -> Done:
+        monkeypatch.setattr("sys.argv", ["wnn2hdl", *map(str, words)])
+        status = main()
+        printed = capsys.readouterr()
+        return Done(status, printed.out, printed.err)
+
+    return call

@@ -1,0 +1,93 @@
+"""`train` as a user meets it."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+Run = Callable[..., Any]
+
+
+def save(path: Path, array: NDArray[np.generic]) -> None:
+    path.parent.mkdir(exist_ok=True)
+    Image.fromarray(array).save(path)
+
+
+@pytest.fixture
+def folders(tmp_path: Path) -> tuple[Path, Path]:
+    """A picture and its mask, half and half."""
+    rgb = np.zeros((8, 8, 3), dtype=np.uint8)
+    rgb[:, 4:] = 200
+    save(tmp_path / "images" / "a.png", rgb)
+    save(tmp_path / "masks" / "a.png", rgb[..., 0])
+    return tmp_path / "images", tmp_path / "masks"
+
+
+def test_training_prints_one_json_object_and_nothing_else(
+    run: Run, folders: tuple[Path, Path], tmp_path: Path
+) -> None:
+    images, masks = folders
+    done = run(
+        "train", "--images", images, "--masks", masks, "--bits", "R7,G7", "--address-bits", 2, "--rams", 1,
+        "--json", "-o", tmp_path / "m.json",
+    )  # fmt: skip
+    assert done.status == 0, done.stderr
+    assert json.loads(done.stdout)["bits"] == ["R7", "G7"]
+    done = run("evaluate", tmp_path / "m.json", "--images", images, "--masks", masks, "--json")
+    assert json.loads(done.stdout)["accuracy"] == 1.0
+    assert json.loads(done.stdout)["images"] == 1
+
+
+def test_more_classes_by_a_palette(run: Run, folders: tuple[Path, Path], tmp_path: Path) -> None:
+    images, masks = folders
+    colours = np.zeros((8, 8, 3), dtype=np.uint8)
+    colours[:, 2:4], colours[:, 4:] = (255, 0, 0), (0, 0, 255)
+    save(masks / "a.png", colours)
+    palette = tmp_path / "palette.json"
+    palette.write_text(json.dumps({"forest": "#000000", "burnt": "#ff0000", "water": "#0000ff"}))
+    model = tmp_path / "new" / "m.json"
+    done = run(
+        "train", "--images", images, "--masks", masks, "--palette", palette, "--bits", "R7,G7",
+        "--address-bits", 2, "--rams", 1, "--json", "-o", model,
+    )  # fmt: skip
+    assert json.loads(done.stdout)["classes"] == ["forest", "burnt", "water"]
+    assert "different classes" in run("evaluate", model, "--images", images, "--masks", masks).complaint()
+
+
+def test_garbage_gets_one_line(run: Run, folders: tuple[Path, Path], tmp_path: Path) -> None:
+    images, masks = folders
+    model = tmp_path / "m.json"
+
+    def train(*words: object) -> str:
+        return str(run("train", "-o", model, *words).complaint())
+
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    assert "empty" in train("--images", empty, "--masks", masks)
+    assert "--images and --masks" in train("--images", images)
+    assert "10 of 2" in train("--images", images, "--masks", masks, "--bits", "R7,G7", "--address-bits", 10)
+    save(masks / "a.png", np.zeros((4, 4), dtype=np.uint8))
+    assert "4x4" in train("--images", images, "--masks", masks)
+    save(masks / "a.png", np.zeros((8, 8), dtype=np.uint8))
+    assert "deforested" in train("--images", images, "--masks", masks)
+    (images / "a.png").write_text("not a picture")
+    assert "a.png" in train("--images", images, "--masks", masks)
+    save(images / "a.png", np.zeros((8, 8), dtype=np.uint16))
+    assert "16" in train("--images", images, "--masks", masks)
+    assert "X9" in train("--images", images, "--masks", masks, "--bits", "X9")
+    assert not model.exists()
+
+
+def test_options_that_a_neighbourhood_has_no_use_for_are_refused(run: Run, tmp_path: Path) -> None:
+    def train(*words: object) -> str:
+        start = ("train", "--neighbourhood", 3, "-o", tmp_path / "m.json")
+        return str(run(*start, *words).complaint())
+
+    assert "--neighbourhood chooses the classifier itself: --rams" in train("--rams", "4")
+    assert "leave --neighbourhood out" in train("--pareto")
+    assert "takes 13 LUTs: 4 allowed" in train("--max-luts", "4")
