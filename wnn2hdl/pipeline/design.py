@@ -105,7 +105,7 @@ class Design:
             specification = _specification(model, data)
             networks = {name: LutNetwork.from_json(data[name]) for name in tables(specification)}
             return cls(specification, data["mode"], data["target"], data["style"], networks)
-        except (KeyError, TypeError, ValueError, IndexError) as error:
+        except (KeyError, TypeError, ValueError, IndexError, ModelFileError) as error:
             raise ModelFileError("the design is damaged", value=f"{path} ({error})") from error
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.errors import CheckError, InputError
-from wnn2hdl.ir import LutNetwork, WisardModel
+from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import Circuits
 from wnn2hdl.pipeline.compile import Build, compile_model, require_luts
@@ -111,11 +111,3 @@ def test_too_many_luts_fail() -> None:
     require_luts(build, 22)
     with pytest.raises(CheckError, match="22, allowed are 21"):
         require_luts(build, 21)
-
-
-def test_a_design_survives_its_file(build: Path, tmp_path: Path) -> None:
-    design = Design.load(build)
-    design.save(tmp_path)
-    for name in ("design.json", "model.json"):
-        assert (tmp_path / name).read_bytes() == (build / name).read_bytes()
-    assert all(isinstance(network, LutNetwork) for network in design.networks.values())
