@@ -1,6 +1,5 @@
 """Pictures and masks are read as they are, or refused with one clear line."""
 
-import json
 import struct
 from pathlib import Path
 
@@ -10,13 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, TiffImagePlugin
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import (
     Palette,
     list_images,
-    pair_masks,
     picture_size,
     read_labels,
     read_mask,
@@ -76,6 +74,20 @@ def test_transparent_pixels_are_refused(tmp_path: Path) -> None:
     alpha[0, :2] = 254
     path = save(tmp_path / "a.png", np.dstack([RGB, alpha]))
     with pytest.raises(InputError, match="2 pixels of the picture are transparent"):
+        read_rgb(path)
+
+
+@pytest.mark.parametrize("array", [RGB, RGB[..., 0]], ids=["rgb", "grey"])
+def test_pixels_without_data_are_refused(tmp_path: Path, array: NDArray[np.uint8]) -> None:
+    path, tags = tmp_path / "a.tif", TiffImagePlugin.ImageFileDirectory_v2()
+    tags[42113] = "7"  # GDAL_NODATA
+    holed = np.where(array == 7, np.uint8(8), array)
+    holed[0, 0] = 8 if array.ndim == 2 else (7, 7, 8)
+    Image.fromarray(holed).save(path, tiffinfo=tags)
+    assert read_rgb(path).shape == RGB.shape
+    holed[0, :2] = 7
+    Image.fromarray(holed).save(path, tiffinfo=tags)
+    with pytest.raises(InputError, match="2 pixels of the picture hold no data"):
         read_rgb(path)
 
 
@@ -206,85 +218,6 @@ def test_a_colour_outside_the_palette_is_named(tmp_path: Path) -> None:
     path = save(tmp_path / "m.png", np.array([[[0, 0, 255], [1, 2, 3]]], dtype=np.uint8))
     with pytest.raises(InputError, match=r"1 pixels of the mask .* not in the palette: .*m\.png \(#010203\)"):
         read_labels(path, (1, 2), palette)
-
-
-def test_a_palette_file_names_classes_in_order(tmp_path: Path) -> None:
-    (tmp_path / "p.json").write_text(json.dumps({"forest": "#000000", "river": "#0000ff", "road": "white"}))
-    palette = Palette.read(tmp_path / "p.json")
-    assert palette == Palette(("forest", "river", "road"), ((0, 0, 0), (0, 0, 255), (255, 255, 255)))
-
-
-@pytest.mark.parametrize(
-    ("entries", "message"),
-    [
-        ({"forest": "#000"}, "2 to 256 classes"),
-        ({"forest": "#000", "river": "wet"}, "gives 'river' no colour"),
-        ({"forest": "#000", "river": 7}, "gives 'river' no colour"),
-        ({"forest": "#000", "river": "#000000"}, "share a colour"),
-    ],
-)
-def test_bad_palettes_are_refused(tmp_path: Path, entries: dict[str, object], message: str) -> None:
-    (tmp_path / "p.json").write_text(json.dumps(entries))
-    with pytest.raises(InputError, match=message):
-        Palette.read(tmp_path / "p.json")
-
-
-def test_images_are_listed_sorted_and_by_suffix(tmp_path: Path) -> None:
-    for name in ("b.PNG", "a.tif", ".hidden.png", "notes.txt"):
-        (tmp_path / name).touch()
-    (tmp_path / "folder.png").mkdir()
-    assert [path.name for path in list_images(tmp_path)] == ["a.tif", "b.PNG"]
-
-
-def test_a_folder_without_pictures_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no pictures in the folder"):
-        list_images(tmp_path)
-    with pytest.raises(InputError, match=r"cannot read the folder: .*gone \(No such file"):
-        list_images(tmp_path / "gone")
-
-
-def make_pairs(folder: Path, images: list[str], masks: list[str]) -> tuple[Path, Path]:
-    for name, files in (("images", images), ("masks", masks)):
-        (folder / name).mkdir()
-        for file in files:
-            (folder / name / file).touch()
-    return folder / "images", folder / "masks"
-
-
-def test_masks_are_paired_by_stem(tmp_path: Path) -> None:
-    images, masks = make_pairs(tmp_path, ["b.tif", "a.jpg"], ["a.png", "b.png", "more.png"])
-    assert pair_masks(images, masks) == (
-        (images / "a.jpg", masks / "a.png"),
-        (images / "b.tif", masks / "b.png"),
-    )
-
-
-def test_missing_masks_are_counted_and_named(tmp_path: Path) -> None:
-    folders = make_pairs(tmp_path, ["a.png", "b.png"], ["a.png"])
-    with pytest.raises(InputError, match=r"1 of 2 pictures have no mask of the same stem in .*masks: b\.png"):
-        pair_masks(*folders)
-
-
-def test_two_files_of_one_stem_are_refused(tmp_path: Path) -> None:
-    folders = make_pairs(tmp_path, ["a.png", "a.tif"], ["a.png"])
-    with pytest.raises(InputError, match=r"same stem: .*a\.png, a\.tif"):
-        pair_masks(*folders)
-
-
-@pytest.mark.parametrize("array", [RGB, RGB[..., 0]], ids=["rgb", "grey"])
-def test_a_written_png_holds_the_array(tmp_path: Path, array: NDArray[np.uint8]) -> None:
-    write_png(tmp_path / "a.png", array)
-    assert np.array_equal(np.asarray(Image.open(tmp_path / "a.png")), array)
-
-
-def test_a_bool_array_becomes_black_and_white(tmp_path: Path) -> None:
-    write_png(tmp_path / "a.png", RGB[..., 0] > 127)
-    assert np.array_equal(read_rgb(tmp_path / "a.png")[..., 1], (RGB[..., 0] > 127) * np.uint8(255))
-
-
-def test_a_png_is_not_written_into_a_missing_folder(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot write"):
-        write_png(tmp_path / "gone" / "a.png", RGB)
 
 
 @pytest.mark.realdata
