@@ -24,7 +24,8 @@ from wnn2hdl.report import Exhibit, index_page
 from wnn2hdl.samples import landscape
 from wnn2hdl.scan.local import run_locally as scan_locally
 from wnn2hdl.scan.options import ScanOptions
-from wnn2hdl.scan.scanning import OVERLAY_FILE, Scanner
+from wnn2hdl.scan.output import OVERLAY_FILE
+from wnn2hdl.scan.scanning import Scanner
 from wnn2hdl.sweep import Outcome, Recipe, draw, grid, present, run_locally, run_sweep
 
 if TYPE_CHECKING:

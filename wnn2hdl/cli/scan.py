@@ -86,6 +86,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
     "--mask", type=file, help="A raster of INPUT's size; where it is not 0, INPUT is left out (clouds)."
 )
 @click.option("--before", type=file, help="The same area at an earlier date: maps what was cleared since.")
+@click.option("--before-mask", type=file, help="As --mask, of the picture of --before.")
 @click.option(
     "--vector",
     type=click.Choice(get_args(Vector)),
@@ -110,6 +111,7 @@ def scan_command(
     scale: tuple[float, float] | None,
     mask: Path | None,
     before: Path | None,
+    before_mask: Path | None,
     vector: Vector,
     jobs: int | None,
     scheduler: str | None,
@@ -128,6 +130,8 @@ def scan_command(
     """
     if minimum_area is not None and minimum_pixels is not None:
         raise InputError("--minimum-area and --minimum-pixels say the same", mend="give one of them")
+    if before_mask and not before:
+        raise InputError("--before-mask is the mask of --before", value=before_mask, mend="give both")
     if scheduler and jobs:
         raise InputError("--jobs is for this machine, --scheduler for others", mend="give one of them")
     options = ScanOptions(
@@ -140,7 +144,7 @@ def scan_command(
     cores = len(os.sched_getaffinity(0))
     run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores)
     with progress() as report:
-        summary = Scanner.open(model, options, run, report).scan(picture, output, before)
+        summary = Scanner.open(model, options, run, report).scan(picture, output, before, before_mask)
     for warning in summary["warnings"]:
         click.echo(f"wnn2hdl: warning: {warning}", err=True)
     emit(summary | {"output": str(output)}, _text(summary, output), as_json=as_json)

@@ -1,6 +1,6 @@
 """Labelled images and how they are split."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,14 @@ from wnn2hdl.errors import InputError
 
 CLASSES = ("forest", "deforested")
 """The two classes of the reference design; the first is the background."""
+
+NATURAL = ("river", "water")
+"""Classes other than the background that are no deforestation: what they cover was never felled."""
+
+
+def cleared_classes(names: Sequence[str]) -> tuple[int, ...]:
+    """Indices of the classes that count as deforested: all but the first, the background, and `NATURAL`."""
+    return tuple(index for index, name in enumerate(names) if index and name not in NATURAL)
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,7 +39,7 @@ def pair_masks(images: Path, masks: Path) -> tuple[tuple[Path, Path], ...]:
         InputError: a folder cannot be read or is empty, a picture has no mask, or two files of a folder have
             the same stem. Masks without a picture are left out.
     """
-    pictures, mask_of = _by_stem(images), _by_stem(masks)
+    pictures, mask_of = by_stem(images), by_stem(masks)
     missing = [path.name for stem, path in pictures.items() if stem not in mask_of]
     if missing:
         raise InputError(
@@ -50,7 +50,12 @@ def pair_masks(images: Path, masks: Path) -> tuple[tuple[Path, Path], ...]:
     return tuple((path, mask_of[stem]) for stem, path in pictures.items())
 
 
-def _by_stem(folder: Path) -> dict[str, Path]:
+def by_stem(folder: Path) -> dict[str, Path]:
+    """The pictures of a folder by their stem, sorted.
+
+    Raises:
+        InputError: as `list_images`, or two pictures have the same stem.
+    """
     found: dict[str, Path] = {}
     for path in list_images(folder):
         if path.stem in found:

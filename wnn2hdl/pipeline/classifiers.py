@@ -7,9 +7,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.errors import InputError
 from wnn2hdl.ir import COLOURS, PictureEncoder, WisardModel, codes_to_bits
 from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.evaluation import circuit_answers
+from wnn2hdl.pipeline.folder import FAILED
 from wnn2hdl.pipeline.training import picture_encoder
 from wnn2hdl.pipeline.verification import open_build
 
@@ -87,8 +89,12 @@ def open_classifier(path: Path) -> PictureClassifier:
 
     Raises:
         ModelFileError: the file is missing, damaged or no model.
-        InputError: the folder is no build, or the model reads no pixels.
+        InputError: the folder is no build or a failed one, or the model reads no pixels.
     """
+    if (path / FAILED).exists():
+        raise InputError(
+            "the build failed its checks: its circuit is not its model", value=path, mend="compile it again"
+        )
     if path.is_dir():
         design = open_build(path)[0]
         return replace(circuit_classifier(design), colours=_colours(design.model))

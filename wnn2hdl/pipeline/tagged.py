@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.dataset import cleared_classes
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import list_images, read_rgb
+from wnn2hdl.images import by_stem, read_rgb
 from wnn2hdl.pipeline.classifiers import PictureClassifier
 from wnn2hdl.pipeline.evaluation import with_halo
 from wnn2hdl.pipeline.measures import CONFIDENCE, RESAMPLES
@@ -51,7 +52,7 @@ class TaggedEvaluation:
     """The outcome over tagged pictures.
 
     Attributes:
-        shares: of each picture used, the share of pixels that is not background.
+        shares: of each picture used, the share of pixels of classes that count as deforested.
         cleared: of the same pictures, whether the tags say so.
         left_out: pictures left out, by reason.
         auc: area under the ROC curve of the share as a score; None if one side has no picture.
@@ -68,7 +69,9 @@ class TaggedEvaluation:
 def evaluate_tagged(
     classifier: PictureClassifier, chips: Path, tags: Path, seed: int, progress: Progress
 ) -> TaggedEvaluation:
-    """Rank tagged pictures by the share of pixels that a classifier does not call background; see `RULE`.
+    """Rank tagged pictures by the share of pixels that a classifier calls deforested; see `RULE`.
+
+    Deforested are `cleared_classes`, as in a scan: a river was never felled.
 
     Args:
         classifier: what answers.
@@ -78,12 +81,14 @@ def evaluate_tagged(
         progress: told of each picture read.
 
     Raises:
-        InputError: the tags or a picture cannot be read, or a tagged picture is not in the folder.
+        InputError: the tags or a picture cannot be read, or a tagged picture is not in the folder, or there
+            twice.
     """
     kinds = {name: kind(words) for name, words in read_tags(tags).items()}
     cleared = {name: found for name, found in kinds.items() if isinstance(found, bool)}
     left_out = Counter(found for found in kinds.values() if isinstance(found, str))
-    files = {path.stem: path for path in list_images(chips)}
+    files = by_stem(chips)
+    counted = cleared_classes(classifier.classes)
     shares = {}
     for position, name in enumerate(cleared, start=1):
         if name not in files:
@@ -91,7 +96,7 @@ def evaluate_tagged(
                 f"no picture of this name in {chips}", value=name, mend="correct the file of tags"
             )
         answers = classifier.classify(with_halo(read_rgb(files[name]), classifier.halo))
-        shares[name] = float(np.count_nonzero(answers) / answers.size)
+        shares[name] = float(np.isin(answers, counted).mean())
         progress("classifying chips", position, len(cleared))
     positive = np.array([share for name, share in shares.items() if cleared[name]])
     negative = np.array([share for name, share in shares.items() if not cleared[name]])
@@ -126,6 +131,12 @@ def read_tags(path: Path) -> dict[str, frozenset[str]]:
                     mend=f"its first line should be {','.join(COLUMNS)}",
                 )
             for row in reader:
+                if None in row:
+                    raise InputError(
+                        f"row {reader.line_num} of {path} has more than two columns",
+                        value=",".join([*list(row.values())[:2], *row[None]]),
+                        mend="put blanks between the tags",
+                    )
                 if row["image_name"] in rows:
                     raise InputError(
                         f"row {reader.line_num} of {path} repeats a picture", value=row["image_name"]

@@ -75,10 +75,13 @@ def gdal(path: Path) -> Iterator[Any]:
         InputError: the file is missing, no raster, damaged, or cannot be written.
     """
     rasterio = _rasterio()
+    # Some calls let GDAL's own errors through, which rasterio does not publish.
+    from rasterio._err import CPLE_BaseError
+
     try:
         with rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES):
             yield rasterio
-    except rasterio.errors.RasterioError as error:
+    except (rasterio.errors.RasterioError, CPLE_BaseError) as error:
         # rasterio's own message is often "Read failed. See previous exception for details."
         reason = error.__cause__ or error
         raise InputError(

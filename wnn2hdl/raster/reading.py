@@ -18,6 +18,7 @@ from wnn2hdl.raster.gdal import Georeference, gdal, open_raster, same_grid
 
 _OPAQUE = 255
 _ORIENTATION_TAG = 0x0112
+_UPRIGHT = 1
 _SAMPLE_SIDE = 512
 
 
@@ -52,8 +53,10 @@ class RasterReader:
         height: pixels; likewise `width`.
         block: height and width of the blocks that the file is stored in.
         georeference: where it lies.
-        note: what had to be assumed about its bands.
+        note: what had to be assumed about its bands and pages.
+        files: what GDAL reads for it and its mask: the files themselves, those beside them, a mosaic's parts.
         masked: whether some of it may be invalid.
+        upright: whether viewers show it as it is stored; windows are not turned.
         plain: whether its samples are opaque levels, read as they stand: then `wnn2hdl.images.read_rgb` reads
             it as well, if it is small.
 
@@ -76,8 +79,11 @@ class RasterReader:
             self.georeference = Georeference.of(source)
             names = tuple(x.name for x in source.colorinterp)
             self._channels = choose_channels(path, names, reading.bands)
-            self.note = self._channels.note
-            self._palette = _palette(source) if self._channels.palette else None
+            self.note = "; ".join(filter(None, [self._channels.note, _pages(source)]))
+            self.files: tuple[Path, ...] = tuple(map(Path, source.files))
+            self._palette = (
+                _palette(source, path, self._channels.indexes[0]) if self._channels.palette else None
+            )
             flags = {flag.name for some in source.mask_flag_enums for flag in some}
             self._own_mask = flags != {"all_valid"}
             self._scale = reading.scale or _stated_scale(source, self._channels)
@@ -89,20 +95,16 @@ class RasterReader:
         self.masked = self._own_mask or reading.mask is not None
         as_it_stands = self._palette is None and not (reading.bands or reading.scale)
         self.plain = as_it_stands and not flags & {"alpha", "nodata"}
+        self._orientation = _orientation(path)
+        self.upright = self._orientation == _UPRIGHT
         if reading.mask is not None:
             self._check_mask(reading.mask)
 
     def require_upright(self) -> None:
-        """Raise InputError if the file says that viewers must turn the picture; windows are not turned."""
-        try:
-            # Pillow warns of large pictures and refuses larger ones; only the head is read here.
-            with warnings.catch_warnings(action="ignore"), Image.open(self._path) as picture:
-                orientation = picture.getexif().get(_ORIENTATION_TAG, 1)
-        except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
-            return
-        if orientation != 1:
+        """Raise InputError if the file says that viewers must turn the picture."""
+        if not self.upright:
             raise InputError(
-                f"the picture says that it is to be turned (orientation {orientation})",
+                f"the picture says that it is to be turned (orientation {self._orientation})",
                 value=self._path,
                 mend="save it upright",
             )
@@ -134,14 +136,15 @@ class RasterReader:
             valid = source.dataset_mask(**where) == _OPAQUE if self._own_mask else None
         if self._palette is not None:
             colours = self._palette[samples[0]]
-            return colours[..., :3], _both(valid, colours[..., 3] == _OPAQUE)
+            samples, valid = np.moveaxis(colours[..., :3], 2, 0), _both(valid, colours[..., 3] == _OPAQUE)
         if self._scale is not None:
             if samples.dtype.kind == "f":
                 valid = _both(valid, np.isfinite(samples).all(axis=0))
             samples = scaled(samples, *self._scale)
         if self._reading.mask is not None:
             with self._borrowed(self._reading.mask) as source:
-                clouds = source.read(**_bands(where, source.count))
+                opaque = _opaque_bands(source)
+                clouds = source.read(opaque, **_bands(where, len(opaque)))
             valid = _both(valid, ~clouds.any(axis=0))
         return np.broadcast_to(np.moveaxis(samples, 0, 2), (*shape, 3)), valid
 
@@ -159,11 +162,14 @@ class RasterReader:
     def _check_mask(self, mask: Path) -> None:
         with self._borrowed(mask) as source:
             size, place = (source.height, source.width), Georeference.of(source)
-            lossy = source.driver == "JPEG"
+            lossy, opaque = source.driver == "JPEG", _opaque_bands(source)
+            self.files += tuple(map(Path, source.files))
         if lossy:
             raise InputError(
                 "a JPEG cannot be a mask, its compression smears it", value=mask, mend="save it as PNG"
             )
+        if not opaque:
+            raise InputError("the mask has no band but alpha", value=mask, mend="save it as grey")
         if size != (self.height, self.width):
             raise InputError(
                 "the mask and the picture have different sizes",
@@ -207,10 +213,36 @@ def _both(one: NDArray[np.bool_] | None, other: NDArray[np.bool_]) -> NDArray[np
     return other if one is None else one & other
 
 
-def _palette(source: Any) -> NDArray[np.uint8]:
-    """The colour table of the first band: uint8 ``[256, 4]``, red, green, blue, alpha."""
+def _orientation(path: Path) -> int:
+    """How the picture is to be turned, as EXIF numbers it; `_UPRIGHT` also where Pillow cannot tell."""
+    try:
+        # Pillow warns of large pictures and refuses larger ones; only the head is read here.
+        with warnings.catch_warnings(action="ignore"), Image.open(path) as picture:
+            return int(picture.getexif().get(_ORIENTATION_TAG, _UPRIGHT))
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
+        return _UPRIGHT
+
+
+def _pages(source: Any) -> str:
+    pages = len(source.subdatasets)
+    return f"the file holds {pages} pictures; the first one is read" if pages > 1 else ""
+
+
+def _opaque_bands(source: Any) -> list[int]:
+    """Numbers of the bands other than alpha, from 1."""
+    return [band for band, kind in enumerate(source.colorinterp, 1) if kind.name != "alpha"]
+
+
+def _palette(source: Any, path: Path, band: int) -> NDArray[np.uint8]:
+    """The colour table of a band: uint8 ``[256, 4]``, red, green, blue, alpha."""
+    if source.dtypes[band - 1] != "uint8":
+        raise InputError(
+            f"the colour table is of {source.dtypes[band - 1]} indices",
+            value=path,
+            mend="make it red, green and blue first, for instance with gdal_translate -expand rgb",
+        )
     table = np.zeros((256, 4), dtype=np.uint8)
-    for index, colour in source.colormap(1).items():
+    for index, colour in source.colormap(band).items():
         table[index] = colour
     return table
 

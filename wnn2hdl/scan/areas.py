@@ -15,14 +15,6 @@ from wnn2hdl.scan.ellipsoid import PixelAreas
 SQUARE_METRES = 10_000
 """A hectare."""
 
-NATURAL = ("river", "water")
-"""Classes other than the background that are no deforestation: what they cover was never felled."""
-
-
-def cleared_classes(names: Sequence[str]) -> tuple[int, ...]:
-    """Indices of the classes that count as deforested: all but the first, the background, and `NATURAL`."""
-    return tuple(index for index, name in enumerate(names) if index and name not in NATURAL)
-
 
 @dataclass(frozen=True)
 class ClassArea:

@@ -11,6 +11,7 @@ from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.raster import NODATA, ClassWriter, Georeference, same_grid
 from wnn2hdl.scan.areas import ClassArea
 from wnn2hdl.scan.class_raster import STRIP_PIXELS, open_classes, read_strip, strip_rows
+from wnn2hdl.scan.cleanup import sieve_in_place
 from wnn2hdl.scan.polygons import write_polygons
 
 CHANGES = ("unchanged", "newly cleared", "regrown")
@@ -38,6 +39,7 @@ def write_change(
     before: Path,
     after: Path,
     cleared: Sequence[int],
+    minimum_pixels: int | None,
     output_raster: Path,
     output_polygons: Path,
     progress: Progress,
@@ -45,12 +47,14 @@ def write_change(
     """Map what was not cleared before and is after, and the reverse.
 
     A change from one cleared class to another is none, nor one among the others, as when a river moves. A
-    strip of rows is in memory at a time, and what `write_polygons` needs.
+    strip of rows is in memory at a time, and what `sieve_raster` and `write_polygons` need.
 
     Args:
         before: the class raster of the earlier date.
         after: that of the later one, of the same grid.
         cleared: indices of the classes that count as cleared.
+        minimum_pixels: smaller regions of the raster of changes take what surrounds them, see `sieve_raster`;
+            None leaves them.
         output_raster: a GeoTIFF of the indices of `CHANGES`; nodata where either has none.
         output_polygons: GeoJSON or GeoPackage of what is newly cleared and regrown, by `write_polygons`.
         progress: told of each strip.
@@ -62,13 +66,14 @@ def write_change(
     compared = 0
     counts = np.isin(np.arange(256), cleared)
     with open_classes(before) as earlier, open_classes(after) as later:
-        place = Georeference.of(earlier)
-        if earlier.shape != later.shape or not same_grid(place, Georeference.of(later), *earlier.shape):
+        places = Georeference.of(earlier), Georeference.of(later)
+        if earlier.shape != later.shape or not same_grid(*places, *earlier.shape):
             raise InputError(
                 "the rasters of the two dates are on different grids",
                 value=f"{before} and {after}",
                 mend="bring them onto one grid first, for instance with gdalwarp -r near",
             )
+        place = next((one for one in places if one.located), places[0])
         strips = strip_rows(earlier, STRIP_PIXELS)
         with ClassWriter(output_raster, earlier.height, earlier.width, place, _COLOURS) as written:
             for index, rows in enumerate(strips):
@@ -82,5 +87,7 @@ def write_change(
                 compared += int(both.sum())
                 written.write(changed)
                 progress("comparing dates", index + 1, len(strips))
+    if minimum_pixels is not None:
+        sieve_in_place(output_raster, minimum_pixels, progress)
     newly, regrown = write_polygons(output_raster, output_polygons, CHANGES, progress)
     return Change(compared, newly, regrown)

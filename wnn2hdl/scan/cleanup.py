@@ -44,6 +44,13 @@ def despeckle(classes: NDArray[np.uint8], valid: NDArray[np.bool_], radius: int)
     return winner
 
 
+def sieve_in_place(raster: Path, minimum_pixels: int, progress: Progress) -> None:
+    """As `sieve_raster`, the result instead of the raster."""
+    sieved = raster.with_name(f"sieved-{raster.name}")
+    sieve_raster(raster, sieved, minimum_pixels, progress)
+    sieved.replace(raster)
+
+
 def sieve_raster(
     source: Path,
     output: Path,

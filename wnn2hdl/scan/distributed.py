@@ -51,10 +51,10 @@ def run_distributed(
 
 
 def _classify(task: Task, window: Window) -> WindowResult:
-    return classify_window(_open(task.path, task.reading), task.classifier, task.method, window)
+    return classify_window(_open(task.path, task.reading, task.token), task.classifier, task.method, window)
 
 
 @lru_cache(maxsize=1)
-def _open(path: Path, reading: Reading) -> Source:
-    """A worker keeps its picture open from window to window."""
+def _open(path: Path, reading: Reading, token: str) -> Source:  # noqa: ARG001  # part of the key
+    """A worker keeps a scan's picture open from window to window."""
     return open_source(path, reading)

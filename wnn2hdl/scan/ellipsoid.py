@@ -52,6 +52,8 @@ class PixelAreas:
         self._to_degrees = to_degrees(place.crs)
         self._width, self._height = width, height
         self.middle = float(self._corner_areas(np.array([height // 2]), np.array([width // 2]))[0, 0])
+        # What lies beyond the projection begins at the edge: better told now than when all is classified.
+        self._corner_areas(np.array([0, height - 1]), np.array([0, width - 1]))
         if not self.middle:
             raise self._no_area()
         self._spacing = int(np.clip(_NODE_METRES // self.middle**0.5, 1, _NODE_PIXELS))
@@ -92,10 +94,19 @@ def to_degrees(crs: str) -> "Transformer":
 
     Raises:
         ExtraMissingError: pyproj is not installed.
+        InputError: the system is not one of the Earth.
     """
     with extra_needed("geo", "areas on the ellipsoid need pyproj"):
         from pyproj import Transformer
-    return Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
+        from pyproj.exceptions import ProjError
+    try:
+        return Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
+    except ProjError as error:
+        raise InputError(
+            "no way from the raster's coordinate system to longitude and latitude on the Earth",
+            value=error,
+            mend="correct the system, for instance with gdal_edit.py -a_srs",
+        ) from error
 
 
 def _authalic(latitude: NDArray[np.float64]) -> NDArray[np.float64]:

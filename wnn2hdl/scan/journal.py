@@ -21,7 +21,7 @@ class Journal:
 
     Results may come in any order; held in memory is where they are. What a killed process left half-written
     is cut off when the file is opened, and those windows are missing again. A file that belongs to another
-    scan is emptied. One process may have it open at a time.
+    scan is emptied. One process may have it open at a time. One that ends without a window is removed.
 
     Args:
         path: the file; made if it does not exist.
@@ -52,6 +52,8 @@ class Journal:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if not self:
+            self._path.unlink()
         os.close(self._file)
 
     def __len__(self) -> int:

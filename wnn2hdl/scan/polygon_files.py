@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import extra_needed
+from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.raster import Georeference
 from wnn2hdl.scan.ellipsoid import to_degrees
 
@@ -119,9 +119,15 @@ def _to_map(dataset: "DatasetReader") -> Callable[[NDArray[np.float64]], NDArray
 
 @contextmanager
 def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> Iterator[Write]:
-    """A table ``regions`` of polygons in the raster's coordinate system; arguments as for `geojson`."""
+    """A table ``regions`` of polygons in the raster's coordinate system; arguments as for `geojson`.
+
+    Raises:
+        ExtraMissingError: pyogrio is not installed.
+        InputError: the file cannot be written.
+    """
     with extra_needed("geo", "GeoPackage needs pyogrio"):
         from pyogrio import raw, set_gdal_config_options
+        from pyogrio.errors import DataSourceError
     shapely = _shapely()
     located = Georeference.of(dataset).located
     to_map = _to_map(dataset)
@@ -137,17 +143,22 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
         with warnings.catch_warnings():
             # That there is no coordinate system is known.
             warnings.filterwarnings("ignore", "'crs' was not provided")
-            raw.write(
-                path,
-                shapely.to_wkb(polygons),
-                list(fields.values()),
-                list(fields),
-                layer="regions",
-                driver="GPKG",
-                geometry_type="Polygon",
-                crs=dataset.crs.to_wkt() if located else None,
-                append=append,
-            )
+            try:
+                raw.write(
+                    path,
+                    shapely.to_wkb(polygons),
+                    list(fields.values()),
+                    list(fields),
+                    layer="regions",
+                    driver="GPKG",
+                    geometry_type="Polygon",
+                    crs=dataset.crs.to_wkt() if located else None,
+                    append=append,
+                )
+            except DataSourceError as error:
+                raise InputError(
+                    "cannot write the polygons", value=f"{path} ({error})", mend="the disk may be full"
+                ) from error
 
     # An empty table first, so that a raster without regions makes a file too.
     none = np.zeros(0)

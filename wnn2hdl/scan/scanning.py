@@ -4,28 +4,42 @@ import hashlib
 import math
 import shutil
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import wnn2hdl
+from wnn2hdl.dataset import cleared_classes
 from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError, ModelFileError
-from wnn2hdl.images import list_images
-from wnn2hdl.ir.files import make_folder, read_json, write_json, write_text
+from wnn2hdl.images import by_stem
+from wnn2hdl.ir.files import read_json, write_json, write_text
 from wnn2hdl.pipeline.classifiers import PictureClassifier, open_classifier
 from wnn2hdl.pipeline.training import Progress
-from wnn2hdl.raster import NODATA, RasterReader, add_overviews, same_grid
-from wnn2hdl.scan.areas import SQUARE_METRES, class_areas, cleared_classes
+from wnn2hdl.raster import NODATA, RasterReader, Reading, add_overviews, same_grid
+from wnn2hdl.scan.areas import SQUARE_METRES, class_areas
 from wnn2hdl.scan.change import write_change
-from wnn2hdl.scan.cleanup import sieve_raster
+from wnn2hdl.scan.cleanup import sieve_in_place
 from wnn2hdl.scan.ellipsoid import PixelAreas
 from wnn2hdl.scan.journal import Journal
 from wnn2hdl.scan.mapping import Coverage, Runner, write_classes
 from wnn2hdl.scan.options import ScanOptions
+from wnn2hdl.scan.output import (
+    BEFORE,
+    CHANGE_FILE,
+    CLASSES_FILE,
+    OVERLAY_FILE,
+    SUMMARY_FILE,
+    SUMMARY_PAGE,
+    WORK,
+    deliver,
+    discard,
+    emptied,
+    made,
+    require_apart,
+)
 from wnn2hdl.scan.overlay import overlay_palette, write_overlay
 from wnn2hdl.scan.polygons import write_polygons
 from wnn2hdl.scan.source import Source
@@ -38,23 +52,6 @@ from wnn2hdl.scan.summary import (
     warnings,
 )
 from wnn2hdl.scan.task import Task
-
-SUMMARY_FILE = "summary.json"
-SUMMARY_PAGE = "summary.md"
-CLASSES_FILE = "classes.tif"
-OVERLAY_FILE = "overlay.png"
-
-_WORK = ".scan"
-"""The folder, inside the output's, of what is not finished."""
-
-_RESULTS = (
-    SUMMARY_FILE,
-    SUMMARY_PAGE,
-    CLASSES_FILE,
-    OVERLAY_FILE,
-    "change.tif",
-    *(f"{name}.{kind}" for name in ("polygons", "change") for kind in ("geojson", "gpkg")),
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +91,9 @@ class Scanner:
         file = model / MANIFEST_NAME if model.is_dir() else model
         return cls(model, classifier, hashlib.sha256(file.read_bytes()).hexdigest(), options, run, progress)
 
-    def scan(self, picture: Path, output: Path, before: Path | None = None) -> dict[str, Any]:
+    def scan(
+        self, picture: Path, output: Path, before: Path | None = None, before_mask: Path | None = None
+    ) -> dict[str, Any]:
         """Scan a picture, or all pictures of a folder.
 
         A repeated call goes on where an interrupted one stopped.
@@ -103,45 +102,51 @@ class Scanner:
             picture: a file; or a folder, whose pictures get a folder each in ``output``.
             output: the folder to write into.
             before: a picture of the same area at an earlier date.
+            before_mask: its mask; that of the options is the later picture's.
 
         Returns:
             the object of `SUMMARY_FILE`.
 
         Raises:
-            InputError: a file cannot be read or written, options contradict each other or the pictures.
+            InputError: a file cannot be read or written, or would be written over; options contradict each
+                other or the pictures.
             ExtraMissingError: the extra ``geo`` is not installed.
         """
         if picture.is_dir():
             self._check_folder(picture, before)
-        else:
-            self._check(picture, before)
-        make_folder(output)
-        if picture.is_dir():
-            return self._folder(picture, output)
-        if before is None:
-            return self._finish(output, self._picture(picture, output))
-        # The cloud mask is the later picture's.
-        reading = replace(self.options.reading, mask=None)
+            pictures = by_stem(picture)
+            require_apart([self.model, *pictures.values()], output)
+            with made(output):
+                return self._folder(picture, pictures, output)
+        reading = replace(self.options.reading, mask=before_mask)
         earlier = replace(self, options=replace(self.options, reading=reading))
-        first = earlier._finished(before, output / "before")
-        summary = self._picture(picture, output)
-        summary["warnings"] += [f"{before}: {warning}" for warning in first["warnings"]]
-        summary |= {"before": str(before), "change": self._change(output)}
-        return self._finish(output, summary)
+        files, limit = self._check(picture)
+        if before is not None:
+            files += earlier._check_earlier(before, picture, self.options.reading)
+        require_apart([self.model, *files], output)
+        with made(output):
+            if before is None:
+                return self._finish(output, self._picture(picture, output))
+            first = earlier._finished(before, output / BEFORE)
+            summary = self._picture(picture, output)
+            summary["warnings"] += [f"{before}: {warning}" for warning in first["warnings"]]
+            summary |= {"before": str(before), "change": self._change(output, limit)}
+            return self._finish(output, summary)
 
-    def _check(self, picture: Path, before: Path | None) -> None:
-        """Refuse what cannot be scanned before anything is written."""
-        after = RasterReader(picture, self.options.reading)
-        self._minimum_pixels(after)
-        if before is None:
-            return
+    def _check(self, picture: Path) -> tuple[tuple[Path, ...], int | None]:
+        """Refuse what cannot be scanned before anything is written; all files, and the least pixels."""
+        reader = RasterReader(picture, self.options.reading)
+        return reader.files, self._minimum_pixels(reader)
+
+    def _check_earlier(self, before: Path, picture: Path, reading: Reading) -> tuple[Path, ...]:
+        """The same for the earlier date's picture, beside the later one and how that is read."""
         if self.options.vector == "none":
             raise InputError(
                 "the changes since --before are polygons",
                 value="--vector none",
                 mend="choose geojson or gpkg",
             )
-        earlier = RasterReader(before, replace(self.options.reading, mask=None))
+        earlier, after = RasterReader(before, self.options.reading), RasterReader(picture, reading)
         sizes = [(x.height, x.width) for x in (earlier, after)]
         if sizes[0] != sizes[1] or not same_grid(earlier.georeference, after.georeference, *sizes[0]):
             raise InputError(
@@ -149,24 +154,18 @@ class Scanner:
                 value=f"{before} and {picture}",
                 mend="bring them onto one grid first, for instance with gdalwarp",
             )
+        return earlier.files
 
     def _check_folder(self, folder: Path, before: Path | None) -> None:
         if before or self.options.reading.mask:
             raise InputError(
                 "--before and --mask go with one picture, not with a folder", value=folder, mend="name a file"
             )
-        stems = [path.stem for path in list_images(folder)]
-        for stem in stems:
-            if stems.count(stem) > 1:
-                raise InputError(
-                    "two pictures of a folder have the same stem", value=stem, mend="rename or remove one"
-                )
 
-    def _folder(self, folder: Path, output: Path) -> dict[str, Any]:
-        pictures = list_images(folder)
+    def _folder(self, folder: Path, pictures: Mapping[str, Path], output: Path) -> dict[str, Any]:
         summaries = []
-        for number, path in enumerate(pictures):
-            summaries.append(self._finished(path, output / path.stem))
+        for number, (stem, path) in enumerate(pictures.items()):
+            summaries.append(self._finished(path, output / stem))
             self.progress("scanning pictures", number + 1, len(pictures))
         coverage = Coverage(
             sum(x["classified_pixels"] for x in summaries), sum(x["coverage"]["pixels"] for x in summaries)
@@ -186,18 +185,19 @@ class Scanner:
             **_speed(sum(x["pixels"] for x in summaries), sum(x["seconds"] for x in summaries)),
             "pictures": summaries,
         }
+        discard(output)
         return self._finish(output, summary)
 
     def _finished(self, picture: Path, output: Path) -> dict[str, Any]:
         """Scan a picture unless that was done already with the same options."""
-        make_folder(output)
         try:
             known = read_json(output / SUMMARY_FILE, "a summary")
         except ModelFileError:
             known = {}
         if known.get("identity") == self._identity(picture) and (output / CLASSES_FILE).is_file():
             return known
-        return self._finish(output, self._picture(picture, output))
+        with made(output):
+            return self._finish(output, self._picture(picture, output))
 
     def _picture(self, picture: Path, output: Path) -> dict[str, Any]:
         """Scan one picture; all files but the summary."""
@@ -207,16 +207,13 @@ class Scanner:
         source = task.open()
         limit = self._minimum_pixels(source)
         palette = overlay_palette(self.classifier.classes)
-        work = output / _WORK
-        make_folder(work)
-        with Journal(work / "windows", identity) as kept, _emptied(work / "results") as results:
+        work = output / WORK
+        with made(work), Journal(work / "windows", identity) as kept, emptied(work / "results") as results:
             raster = results / CLASSES_FILE
             coverage = write_classes(task, source, kept, self.run, raster, palette, self.progress)
             classify_seconds = time.perf_counter() - started
             if limit is not None:
-                sieved = raster.with_name("sieved.tif")
-                sieve_raster(raster, sieved, limit, self.progress)
-                sieved.replace(raster)
+                sieve_in_place(raster, limit, self.progress)
             add_overviews(raster)
             self.progress("measuring areas", 0, 1)
             areas = class_areas(raster, self.classifier.classes)
@@ -225,7 +222,7 @@ class Scanner:
                 polygons = results / f"polygons.{self.options.vector}"
                 write_polygons(raster, polygons, self.classifier.classes, self.progress)
             write_overlay(source.thinned, raster, results / OVERLAY_FILE, palette)
-            _deliver(results, output)
+            deliver(results, output)
         shutil.rmtree(work)
         pixels = source.height * source.width
         return {
@@ -257,15 +254,15 @@ class Scanner:
             )
         return math.ceil(hectares * SQUARE_METRES / areas.middle)
 
-    def _change(self, output: Path) -> dict[str, Any]:
+    def _change(self, output: Path, limit: int | None) -> dict[str, Any]:
         """Compare the class rasters of two dates that are in the output's folder."""
-        with _emptied(output / _WORK) as results:
-            changes = results / "change.tif"
+        with emptied(output / WORK) as results:
+            changes = results / CHANGE_FILE
             polygons = results / f"change.{self.options.vector}"
-            before = output / "before" / CLASSES_FILE
+            before = output / BEFORE / CLASSES_FILE
             cleared = cleared_classes(self.classifier.classes)
             after = output / CLASSES_FILE
-            change = write_change(before, after, cleared, changes, polygons, self.progress)
+            change = write_change(before, after, cleared, limit, changes, polygons, self.progress)
             add_overviews(changes)
             for file in (changes, polygons):
                 file.replace(output / file.name)
@@ -278,16 +275,12 @@ class Scanner:
 
     def _identity(self, picture: Path) -> dict[str, Any]:
         """What decides the result, as far as it can be told without reading all of the picture."""
-        files = [picture, *([self.options.reading.mask] if self.options.reading.mask else [])]
-        try:
-            states = [[str(file.absolute()), file.stat().st_size, file.stat().st_mtime_ns] for file in files]
-        except OSError as error:
-            raise InputError(
-                "cannot read the picture", value=f"{error.filename} ({error.strerror})"
-            ) from error
+        files = RasterReader(picture, self.options.reading).files
+        # A mosaic's parts may lie where only GDAL can look.
+        states = {file.absolute(): file.stat() for file in files if file.is_file()}
         return {
             "version": wnn2hdl.__version__,
-            "files": states,
+            "files": [[str(file), state.st_size, state.st_mtime_ns] for file, state in states.items()],
             "model": self.digest,
             "options": self.options.to_json(),
         }
@@ -299,26 +292,6 @@ class Scanner:
             "options": self.options.to_json(),
             "versions": {"wnn2hdl": wnn2hdl.__version__, **{name: version(name) for name in packages}},
         }
-
-
-@contextmanager
-def _emptied(folder: Path) -> Iterator[Path]:
-    """A folder for what is not finished; it and all that is in it is removed in the end."""
-    shutil.rmtree(folder, ignore_errors=True)
-    make_folder(folder)
-    try:
-        yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _deliver(results: Path, output: Path) -> None:
-    """Move finished files to their place; an earlier scan's files of other kinds would contradict them."""
-    for name in _RESULTS:
-        if not (results / name).exists():
-            (output / name).unlink(missing_ok=True)
-    for file in sorted(results.iterdir()):
-        file.replace(output / file.name)
 
 
 def _speed(pixels: int, seconds: float) -> dict[str, float]:

@@ -39,13 +39,18 @@ class PlainPicture:
     Args:
         pixels: uint8 ``[height, width, 3]``: red, green, blue.
         valid: bool ``[height, width]``; None for all.
+        georeference: as a world file beside the picture tells.
     """
 
-    georeference = Georeference()
     note = ""
 
-    def __init__(self, pixels: NDArray[np.uint8], valid: NDArray[np.bool_] | None = None) -> None:
-        self._pixels, self._valid = pixels, valid
+    def __init__(
+        self,
+        pixels: NDArray[np.uint8],
+        valid: NDArray[np.bool_] | None = None,
+        georeference: Georeference = Georeference(),  # noqa: B008  # frozen
+    ) -> None:
+        self._pixels, self._valid, self.georeference = pixels, valid, georeference
         self.height, self.width = pixels.shape[:2]
         self.block = (1, self.width)
 
@@ -83,4 +88,7 @@ def open_source(path: Path, reading: Reading) -> Source:
         raster.require_upright()
     if not plain:
         return raster
-    return PlainPicture(read_rgb(path), raster.read(0, 0, *size)[1] if raster.masked else None)
+    valid = raster.read(0, 0, *size)[1] if raster.masked else None
+    # A world file tells where the stored pixels lie, not the turned ones.
+    place = raster.georeference if raster.upright else Georeference()
+    return PlainPicture(read_rgb(path), valid, place)

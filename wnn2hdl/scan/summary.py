@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from wnn2hdl.scan.areas import ClassArea, cleared_classes
+from wnn2hdl.dataset import cleared_classes
+from wnn2hdl.scan.areas import ClassArea
 from wnn2hdl.scan.change import Change
 from wnn2hdl.scan.mapping import Coverage
 

@@ -1,7 +1,8 @@
 """What is to be done with every window of a picture: small enough to be sent to another machine."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from uuid import uuid4
 
 from wnn2hdl.pipeline.classifiers import PictureClassifier
 from wnn2hdl.raster import Reading
@@ -18,12 +19,14 @@ class Task:
         reading: how it is read.
         classifier: what classifies it.
         method: squares and smoothing.
+        token: tells one scan from another of the same path, whose file may be a new one.
     """
 
     path: Path
     reading: Reading
     classifier: PictureClassifier
     method: Method
+    token: str = field(default_factory=lambda: uuid4().hex)
 
     def open(self) -> Source:
         """Open the picture."""

@@ -1,5 +1,6 @@
 """A model file, a build and a picture give one and the same answer."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -88,6 +89,13 @@ def test_what_was_seen_too_rarely_to_fire_is_familiar_all_the_same(model: Wisard
     assert model.bleaching > 1
     assert familiar[fires_fully.any(axis=1)].all()
     assert familiar.sum() > fires_fully.any(axis=1).sum()
+
+
+def test_a_failed_build_answers_nothing(pixel_build: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(pixel_build, tmp_path / "failed")
+    (folder / "FAILED").write_text("differs from the model at code 3\n")
+    with pytest.raises(InputError, match="the build failed its checks"):
+        open_classifier(folder)
 
 
 def test_what_is_no_model_is_refused(model: WisardModel, tmp_path: Path) -> None:

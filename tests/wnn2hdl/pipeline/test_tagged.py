@@ -80,6 +80,14 @@ def test_draws_count_half(tmp_path: Path) -> None:
     assert result.auc == 0.75 == roc_auc_score([0, 0, 1, 1], list(shares.values()))
 
 
+def test_water_was_never_felled(tmp_path: Path) -> None:
+    folder, tags = chips(tmp_path, {"a": 0.4}, {"a": "clear road"})
+    classes = ("forest", "river", "pasture")
+    for answer, share in ((1, 0.0), (2, 0.4)):
+        table = PixelTable(classes, parse_bits("R7"), np.array([0, answer], np.uint8), np.ones(2, np.bool_))
+        assert evaluate_tagged(table, folder, tags, 0, silent).shares == {"a": share}
+
+
 def test_without_both_kinds_there_is_no_area(tmp_path: Path) -> None:
     folder, tags = chips(tmp_path, {"a": 0.1}, {"a": "clear primary"})
     result = evaluate_tagged(RED, folder, tags, 0, silent)
@@ -93,6 +101,7 @@ def test_without_both_kinds_there_is_no_area(tmp_path: Path) -> None:
         ("image_name,tags\n", "no rows"),
         ("image_name,tags\na,clear\na,haze\n", "repeats a picture: a"),
         ('image_name,tags\na,"clear\n', "no CSV text"),
+        ("image_name,tags\na,clear,road\n", "row 2 of .* more than two columns: a,clear,road"),
     ],
 )
 def test_a_bad_file_of_tags_is_refused(tmp_path: Path, text: str, complaint: str) -> None:
@@ -106,6 +115,9 @@ def test_missing_files_are_named(tmp_path: Path) -> None:
         read_tags(tmp_path / "labels.csv")
     folder, tags = chips(tmp_path, {"a": 0.1}, {"b": "clear primary"})
     with pytest.raises(InputError, match=r"no picture of this name in .*: b"):
+        evaluate_tagged(RED, folder, tags, 0, silent)
+    Image.open(folder / "a.png").save(folder / "a.bmp")
+    with pytest.raises(InputError, match="the same stem"):
         evaluate_tagged(RED, folder, tags, 0, silent)
 
 

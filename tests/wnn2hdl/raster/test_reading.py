@@ -101,6 +101,47 @@ def test_a_cloud_mask_takes_pixels_out(save: Any, scene: NDArray[np.uint8], tmp_
     assert np.array_equal(valid, clouds == 0)
 
 
+def test_a_cloud_mask_takes_pixels_out_of_indexed_colours(tmp_path: Path) -> None:
+    Image.fromarray(np.arange(24, dtype=np.uint8).reshape(4, 6)).convert("P").save(tmp_path / "a.png")
+    clouds = np.zeros((4, 6), dtype=np.uint8)
+    clouds[2, 3] = 1
+    Image.fromarray(clouds).save(tmp_path / "clouds.png")
+    _, valid = whole(tmp_path / "a.png", Reading(mask=tmp_path / "clouds.png"))
+    assert valid is not None
+    assert np.array_equal(valid, clouds == 0)
+
+
+def test_a_masks_alpha_is_no_cloud(save: Any, scene: NDArray[np.uint8], tmp_path: Path) -> None:
+    clouds = np.zeros((40, 70, 2), dtype=np.uint8)
+    clouds[:10, :, 0], clouds[..., 1] = 255, 255
+    Image.fromarray(clouds).save(tmp_path / "clouds.png")
+    _, valid = whole(save(scene, photometric="rgb"), Reading(mask=tmp_path / "clouds.png"))
+    assert valid is not None
+    assert np.array_equal(valid, clouds[..., 0] == 0)
+
+
+def test_a_colour_table_of_more_than_256_colours_is_refused(save: Any) -> None:
+    path = save(np.zeros((1, 4, 5), np.uint16), photometric="palette")
+    with pytest.raises(InputError, match=r"colour table is of uint16 .*gdal_translate -expand rgb"):
+        RasterReader(path, Reading())
+
+
+def test_further_pages_are_told(tmp_path: Path) -> None:
+    pages = [Image.new("RGB", (5, 4), (level, 0, 0)) for level in (10, 20)]
+    pages[0].save(tmp_path / "a.tif", save_all=True, append_images=pages[1:])
+    reader = RasterReader(tmp_path / "a.tif", Reading())
+    assert reader.note == "the file holds 2 pictures; the first one is read"
+    assert reader.read(0, 0, 4, 5)[0][0, 0].tolist() == [10, 0, 0]
+
+
+def test_all_files_of_a_picture_are_named(save: Any, scene: NDArray[np.uint8], tmp_path: Path) -> None:
+    path = save(scene, photometric="rgb")
+    path.with_suffix(".tfw").write_text("1\n0\n0\n-1\n0\n0\n")
+    Image.fromarray(scene[0]).save(tmp_path / "clouds.png")
+    files = RasterReader(path, Reading(mask=tmp_path / "clouds.png")).files
+    assert {file.name for file in files} >= {path.name, path.with_suffix(".tfw").name, "clouds.png"}
+
+
 def test_a_mask_that_does_not_fit_is_refused(save: Any, scene: NDArray[np.uint8], tmp_path: Path) -> None:
     path = save(scene, photometric="rgb", crs="EPSG:32720", transform=rasterio.Affine(10, 0, 0, 0, -10, 0))
     Image.new("L", (40, 70)).save(tmp_path / "turned.png")

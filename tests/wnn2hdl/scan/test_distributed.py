@@ -2,12 +2,16 @@
 
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
+import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError, ToolError
+from wnn2hdl.images import write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.classifiers import model_classifier
 from wnn2hdl.raster import Reading
@@ -40,6 +44,19 @@ def test_a_killed_worker_changes_nothing(cluster: Any, task: Task) -> None:
     with pytest.raises(ProcessLookupError):
         os.kill(first, 0)
     assert [found[window.index] for window in WINDOWS] == list(run_locally(1, task, WINDOWS))
+
+
+@pytest.mark.slow
+def test_a_worker_sees_that_the_file_is_a_new_one(cluster: Any, task: Task) -> None:
+    def scan() -> list[WindowResult]:
+        found = run_distributed(cluster.scheduler_address, replace(task, token=uuid4().hex), WINDOWS)
+        return sorted(found, key=lambda result: result.index)
+
+    first = scan()
+    write_png(task.path, np.full((150, 210, 3), 200, dtype=np.uint8))
+    second = scan()
+    assert second == list(run_locally(1, task, WINDOWS))
+    assert second != first
 
 
 @pytest.mark.slow

@@ -102,3 +102,16 @@ def test_pixels_without_an_area_are_refused(tmp_path: Path, transform: tuple[flo
     path = raster(tmp_path / "lost.tif", "EPSG:32720", transform, 4, 5)
     with pytest.raises(InputError, match="the pixels have no area on the Earth"):
         areas(path, (0, 4))
+
+
+def test_another_world_has_no_area_on_the_earth(tmp_path: Path) -> None:
+    path = raster(tmp_path / "moon.tif", "IAU_2015:30100", (1, 0, 5, 0, -1, 0), 2, 3)
+    with pytest.raises(InputError, match="longitude and latitude on the Earth"):
+        areas(path, (0, 2))
+
+
+def test_corners_beyond_the_projection_are_told_at_once(tmp_path: Path) -> None:
+    globe = "+proj=ortho +lat_0=0 +lon_0=0 +ellps=WGS84"
+    path = raster(tmp_path / "globe.tif", globe, (1e5, 0, -65e5, 0, -1e5, 65e5), 130, 130)
+    with rasterio.open(path) as dataset, pytest.raises(InputError, match="no area on the Earth"):
+        PixelAreas(Georeference.of(dataset), *dataset.shape)

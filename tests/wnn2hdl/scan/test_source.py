@@ -60,6 +60,16 @@ def test_a_mask_for_a_picture_that_is_turned_has_two_readings(
         open_source(tmp_path / "a.jpg", Reading(mask=tmp_path / "clouds.png"))
 
 
+def test_a_world_file_locates_a_picture_that_is_not_turned(pixels: NDArray[np.uint8], tmp_path: Path) -> None:
+    (tmp_path / "a.pgw").write_text("0.5\n0\n0\n-0.5\n100.25\n199.75\n")
+    Image.fromarray(pixels).save(tmp_path / "a.png")
+    assert open_source(tmp_path / "a.png", Reading()).georeference.transform == (0.5, 0, 100, 0, -0.5, 200)
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    Image.fromarray(pixels).save(tmp_path / "a.png", exif=exif)
+    assert open_source(tmp_path / "a.png", Reading()).georeference.transform is None
+
+
 def test_large_pictures_are_read_in_windows(
     pixels: NDArray[np.uint8], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
