@@ -21,6 +21,10 @@ REFERENCE_WINDOW_M = 95.0
 """The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre a pixel."""
 
 
+LEAST_FRAMES = 4
+"""With 3 that are all right, a fix still cannot be told to be right in 95 % of cases."""
+
+
 class CalibrationType(click.ParamType[int | Path]):
     """How many frames of the flight, or a file with the poses of some."""
 
@@ -30,8 +34,10 @@ class CalibrationType(click.ParamType[int | Path]):
         """The count, or the file."""
         text = str(value)
         if text.isdecimal():
-            if int(text) < 3:
-                self.fail(f"{text} frames are too few to calibrate on; give at least 3", param, ctx)
+            if int(text) < LEAST_FRAMES:
+                self.fail(
+                    f"{text} frames are too few to calibrate on; give at least {LEAST_FRAMES}", param, ctx
+                )
             return int(text)
         if not text.endswith(".csv"):
             self.fail(f"{text!r} is neither a count nor a CSV of poses", param, ctx)
@@ -49,6 +55,11 @@ class CalibrationType(click.ParamType[int | Path]):
     "calibration",
     type=CalibrationType(),
     help="Fit camera, edges and confidence on so many frames, or on those of a CSV; they are not scored.",
+)
+@click.option(
+    "--calibrate-frames",
+    type=folder,
+    help="Folder of the frames of --calibrate's CSV.  [default: that of --frames]",
 )
 @click.option(
     "--search",
@@ -93,6 +104,7 @@ def locate_command(
     camera_file: Path | None,
     focal: float | None,
     calibration: int | Path | None,
+    calibrate_frames: Path | None,
     search: str,
     window_m: float,
     heading_deg: float | None,
@@ -106,13 +118,16 @@ def locate_command(
 
     Without --map, a small synthetic flight is located. A window around the logged position bounds the error:
     with the default of 95 m, the reference's, no error can exceed 134 m, and a blind guess would be 73 m off
-    on average. Searching the whole map has no such help.
+    on average. Searching the whole map has no such help, and needs no position in POSES: without one, a frame
+    is located and no error told.
 
     \b
     Examples:
       wnn2hdl locate
       wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --camera camera.toml
       wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --focal 750 --calibrate 10
+      wnn2hdl locate --map map.tif --frames NEW --poses new.csv --focal 750 --calibrate known.csv \\
+        --calibrate-frames KNOWN --search map
     """
     # Not at the top: they load what other commands need not wait for.
     from wnn2hdl.navigate.flight import run_flight
@@ -125,12 +140,23 @@ def locate_command(
         searches["window"] = window_m
     if search in ("map", "both"):
         searches["map"] = None
+    if calibrate_frames and not isinstance(calibration, Path):
+        raise InputError(
+            "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, mend="give both"
+        )
     with progress() as report:
         if map_file and frames and poses_file:
-            scored, calibrating = _divided(read_poses(poses_file), calibration, frames)
-            recording = Recording.of_files(map_file, frames, scored, _camera(camera_file, focal))
+            scored, calibrating = _divided(read_poses(poses_file), calibration, calibrate_frames)
+            files = frame_files(scored, frames) | frame_files(calibrating, calibrate_frames or frames)
+            recording = Recording.of_files(map_file, files, _camera(camera_file, focal)).scoring(scored)
         else:
             _refuse_halves(given, {"--camera": camera_file, "--focal": focal})
+            if isinstance(calibration, Path):
+                raise InputError(
+                    "the embedded flight has no file of poses",
+                    value=calibration,
+                    mend="give a count to --calibrate",
+                )
             report("flight", 0, 1)
             recording = Recording.embedded(seed)
             report("flight", 1, 1)
@@ -145,28 +171,26 @@ def locate_command(
             scale=scale_percent / 100,
             jobs=jobs,
         )
-        files = write_run(run, output)
-    data = summary(run) | {"files": [str(path) for path in files]}
+        written = write_run(run, output)
+    data = summary(run) | {"files": [str(path) for path in written]}
     emit(data, f"{flight_markdown(run.result)}\nwritten to {output}", as_json=as_json)
 
 
 def _divided(
-    poses: tuple[Pose, ...], calibration: int | Path | None, frames: Path | None
+    poses: tuple[Pose, ...], calibration: int | Path | None, elsewhere: Path | None
 ) -> tuple[tuple[Pose, ...], tuple[Pose, ...]]:
-    """Poses that are scored and poses that calibrate."""
+    """Poses that are scored and poses that calibrate, whose frames may lie in a folder of their own."""
     if calibration is None:
         return poses, ()
     if isinstance(calibration, int):
         calibrating, scored = split(poses, calibration)
         return scored, calibrating
-    if frames is None:
-        raise InputError(
-            "the embedded flight has no file of poses", value=calibration, mend="give a count to --calibrate"
-        )
     calibrating = read_poses(calibration)
-    frame_files(calibrating, frames)
     names = {pose.frame for pose in calibrating}
-    scored = tuple(pose for pose in poses if pose.frame not in names)
+    # Cameras count anew for each flight: in another folder, a name may be another frame's.
+    scored = tuple(
+        pose for pose in poses if pose not in calibrating and (elsewhere or pose.frame not in names)
+    )
     if not scored:
         raise InputError(
             "no frame is left to score", value=calibration, mend="calibrate on other frames than --poses has"

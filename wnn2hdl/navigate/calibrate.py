@@ -9,7 +9,7 @@ all (a gimbal may keep it level), and whether the tilt was set anew in flight. T
 tilt that is constant over stretches of the flight.
 """
 
-import re
+from bisect import bisect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.navigate.camera import MAX_TILT_DEG, Camera
 from wnn2hdl.navigate.geometry import ground_patch
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.matching import MapIndex, Window
-from wnn2hdl.navigate.poses import Pose
-from wnn2hdl.navigate.world import MapGrid
+from wnn2hdl.navigate.poses import Pose, frame_numbers
 
 WINDOW_M = 60.0
 """How far a match may be from the truth: as much as 27 degrees of tilt make at 120 m."""
@@ -88,17 +88,19 @@ class Calibration:
     before: tuple[Sight, ...]
     after: tuple[Sight, ...]
 
-    def camera_at(self, frame: str, flight: Sequence[str]) -> Camera:
-        """The camera at any frame: as at the nearest calibration frame of the flight.
+    def cameras_at(self, frame: str) -> tuple[Camera, ...]:
+        """The cameras that may have taken a frame: of the stretch it lies in; between two, of either.
 
-        Args:
-            frame: its name.
-            flight: names of all frames, also those of the calibration, in any order; names that count up
-                give the order of the flight.
+        Where a frame lies is told by its name's number among those of the calibration's frames; if it is not
+        told, it may have been any.
         """
-        order = {name: place for place, name in enumerate(sorted({*flight, *self.frames}, key=flight_order))}
-        places = np.array([order[name] for name in self.frames])
-        return self.cameras[int(np.argmin(np.abs(places - order[frame])))]
+        numbers = frame_numbers(self.frames) and frame_numbers(tuple(dict.fromkeys((*self.frames, frame))))
+        if numbers is None:
+            return tuple(dict.fromkeys(self.cameras))
+        if frame in self.frames:
+            return (self.cameras[self.frames.index(frame)],)
+        after = bisect(numbers[:-1], numbers[-1])
+        return tuple(dict.fromkeys(self.cameras[max(after - 1, 0) : after + 1]))
 
     @property
     def stretches(self) -> tuple[tuple[str, float], ...]:
@@ -123,13 +125,6 @@ class Calibration:
         }
 
 
-def flight_order(frame: str) -> list[tuple[bool, int, str]]:
-    """Key to sort names of frames by, their numbers as numbers."""
-    return [
-        (part.isdecimal(), int(part) if part.isdecimal() else 0, part) for part in re.split(r"(\d+)", frame)
-    ]
-
-
 def calibrate(
     grid: MapGrid,
     grey_map: NDArray[np.uint8],
@@ -144,7 +139,7 @@ def calibrate(
         grid: the map's grid; coarser than for matching will do.
         grey_map: uint8, the grid's picture in grey.
         frames: uint8 ``[height, width]`` each, grey.
-        poses: of the frames, at least `MIN_FRAMES`.
+        poses: of the frames, at least `MIN_FRAMES`, in the order of flight.
         camera: first guess; its focal length good to 10 %.
         progress: told how many steps of how many are done.
 
@@ -157,8 +152,7 @@ def calibrate(
             value=len(poses),
             mend="calibrate on more frames",
         )
-    order = sorted(range(len(poses)), key=lambda i: flight_order(poses[i].frame))
-    fit = _Fit(grid, MapIndex(grey_map, grid.valid), [frames[i] for i in order], [poses[i] for i in order])
+    fit = _Fit(grid, MapIndex(grey_map, grid.valid), list(frames), list(poses))
     done = iter(range(1, 100))
     total = 4 + 2 * _ROUNDS
 

@@ -174,13 +174,17 @@ class Camera:
         Raises:
             InputError: the new size has another shape, so that the frames were cropped, not resized.
         """
+        self.require_shape(width, height, "frames")
+        return self.resized(width, height)
+
+    def require_shape(self, width: int, height: int, what: str) -> None:
+        """Raise InputError, which names ``what``, unless the sides have the camera's ratio."""
         if abs(width * self.height / (height * self.width) - 1) > _SHAPE_TOLERANCE:
             raise InputError(
-                "the frames have another shape than the camera's",
+                f"{what}: another shape than the camera's",
                 value=f"{width}x{height}, not {self.width}x{self.height}",
                 mend="give the camera as it is for these frames",
             )
-        return self.resized(width, height)
 
     def resized(self, width: int, height: int) -> Self:
         """The camera whose frames are this one's, stretched to another size."""

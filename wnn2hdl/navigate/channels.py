@@ -2,6 +2,7 @@
 
 from collections import OrderedDict
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
 import scipy.fft
@@ -59,6 +60,7 @@ class ChannelIndex:
         self._channels = channels
         self._valid = valid
         self._pieces: OrderedDict[tuple[int, int, int, int], _Piece] = OrderedDict()
+        self._making = Lock()
 
     def search(
         self,
@@ -128,17 +130,21 @@ class ChannelIndex:
         """Spectra of what a template of a shape can cover from the positions of a window."""
         rows, columns = (span + side - 1 for span, side in zip(window.shape, padded, strict=True))
         key = (window.top, window.left, rows, columns)
-        if key not in self._pieces:
-            shape = scipy.fft.next_fast_len(rows, real=True), scipy.fft.next_fast_len(columns, real=True)
-            valid = _cut(self._valid[np.newaxis], window, (rows, columns))[0]
-            channels = _cut(self._channels, window, (rows, columns)) & valid
-            layers = (channels, channels.sum(axis=0), valid)
-            spectra = (scipy.fft.rfft2(layer.astype(np.float64), shape) for layer in layers)
-            self._pieces[key] = _Piece(shape, *spectra)
+        with self._making:
+            piece = self._pieces.pop(key, None)
+            if piece is None:
+                shape = (
+                    scipy.fft.next_fast_len(rows, real=True),
+                    scipy.fft.next_fast_len(columns, real=True),
+                )
+                valid = _cut(self._valid[np.newaxis], window, (rows, columns))[0]
+                channels = _cut(self._channels, window, (rows, columns)) & valid
+                layers = (channels, channels.sum(axis=0), valid)
+                piece = _Piece(shape, *(scipy.fft.rfft2(layer.astype(np.float64), shape) for layer in layers))
+            self._pieces[key] = piece
             if len(self._pieces) > _KEPT:
                 self._pieces.popitem(last=False)
-        self._pieces.move_to_end(key)
-        return self._pieces[key]
+        return piece
 
 
 def _cut(layers: NDArray[np.bool_], window: Window, shape: tuple[int, int]) -> NDArray[np.bool_]:

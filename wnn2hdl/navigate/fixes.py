@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from wnn2hdl.navigate.distance import geodesic_m, great_circle_m
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.matching import Acceptance, Match, choose_threshold, peak_weights
 from wnn2hdl.navigate.navigator import Located
-from wnn2hdl.navigate.poses import Pose
+from wnn2hdl.navigate.poses import Pose, frame_numbers
 from wnn2hdl.navigate.results import FAR_M, FrameFix
-from wnn2hdl.navigate.track import Fix, follow, frame_times
-from wnn2hdl.navigate.world import MapGrid
+from wnn2hdl.navigate.track import Fix, follow
 
 UNCALIBRATED = Acceptance(0.0, 0.0, 1.0)
 """Without calibration frames nothing is known of a confidence's worth, so every position is given."""
@@ -86,7 +86,8 @@ def tracked(
 
     Its confidence in a position is the probability that it is right, off by less than `FAR_M`; from
     `PRECISION` on the position is given as a fix. Where the filter knows nothing, before its
-    start or when it has lost the track, the position is that of the frame alone, and no fix is given.
+    start or when it has lost the track, or is outside the window that the UAV is known to be in, the position
+    is that of the frame alone, and no fix is given.
     """
     offered = [
         [
@@ -98,11 +99,12 @@ def tracked(
         for at in located
     ]
     area = float(grid.valid.sum()) * grid.gsd_m**2 if half_width_m is None else (2 * half_width_m) ** 2
-    points = follow(offered, frame_times([pose.frame for pose in poses]), area_m2=area, right_m=FAR_M)
+    times = frame_numbers([pose.frame for pose in poses])
+    points = follow(offered, times, area_m2=area, right_m=FAR_M)
     track = []
     for pose, at, point in zip(poses, located, points, strict=True):
         seconds = at.seconds if at else 0.0
-        if point:
+        if point and _within(grid, pose, (point.east_m, point.north_m), half_width_m):
             place = point.east_m, point.north_m
             fixed = point.probability >= PRECISION
             track.append(_fix(grid, pose, place, point.probability, fixed, seconds))
@@ -113,26 +115,32 @@ def tracked(
     return tuple(track)
 
 
+def _within(grid: MapGrid, pose: Pose, place: tuple[float, float], half_width_m: float | None) -> bool:
+    """Whether a place lies in the window around where a pose is logged."""
+    if half_width_m is None:
+        return True
+    logged = grid.to_metres(*grid.to_pixel(pose.latitude_deg, pose.longitude_deg))
+    return all(abs(float(middle) - one) <= half_width_m for middle, one in zip(logged, place, strict=True))
+
+
 def _fix(
     grid: MapGrid, pose: Pose, place: tuple[float, float], confidence: float, fixed: bool, seconds: float
 ) -> FrameFix:
-    truth = pose.latitude_deg, pose.longitude_deg
-    pixel = grid.from_metres(*place)
-    latitude, longitude = (float(axis) for axis in grid.to_geographic(*pixel))
-    return FrameFix(
-        pose.frame,
-        *truth,
-        latitude,
-        longitude,
-        float(great_circle_m(*truth, latitude, longitude)),
-        float(geodesic_m(*truth, latitude, longitude)),
-        confidence,
-        fixed,
-        seconds,
+    latitude, longitude = (float(axis) for axis in grid.to_geographic(*grid.from_metres(*place)))
+    fix = replace(
+        _nothing(pose),
+        latitude=latitude,
+        longitude=longitude,
+        confidence=confidence,
+        fixed=fixed,
+        seconds=seconds,
     )
+    if not pose.located:
+        return fix
+    ends = pose.latitude_deg, pose.longitude_deg, latitude, longitude
+    return replace(fix, error_m=float(great_circle_m(*ends)), geodesic_error_m=float(geodesic_m(*ends)))
 
 
 def _nothing(pose: Pose) -> FrameFix:
-    return FrameFix(
-        pose.frame, pose.latitude_deg, pose.longitude_deg, None, None, None, None, 0.0, False, 0.0
-    )
+    latitude, longitude = (pose.latitude_deg, pose.longitude_deg) if pose.located else (None, None)
+    return FrameFix(pose.frame, latitude, longitude, None, None, None, None, 0.0, False, 0.0)

@@ -2,27 +2,28 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
 
 import cv2
 import numpy as np
-from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from wnn2hdl.edges import grey
+from wnn2hdl.errors import InputError
 from wnn2hdl.navigate.calibrate import Calibration, calibrate
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.fixes import accepted, fixes, tracked
 from wnn2hdl.navigate.geometry import ground_patch
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.matching import Acceptance
 from wnn2hdl.navigate.methods import Method, compared_methods
 from wnn2hdl.navigate.navigator import Located, Navigator, Place, PoseTolerance
-from wnn2hdl.navigate.poses import Pose
+from wnn2hdl.navigate.poses import Pose, require_located
 from wnn2hdl.navigate.recording import Recording
 from wnn2hdl.navigate.results import FlightResult, MethodResult, SearchKind, SearchResult
-from wnn2hdl.navigate.weightless import GSD_M, Sighting, by_rule, learn
-from wnn2hdl.navigate.world import MapGrid
+from wnn2hdl.navigate.weightless import GSD_M, Sighting, WeightlessEdges, by_rule, learn
 
 T = TypeVar("T")
 
@@ -43,6 +44,7 @@ class FlightRun:
         calibration: None if the camera was taken as given.
         acceptances: of each search and method: from which confidence on a fix is given.
         methods: in the order of each search's rows.
+        weightless: the edges of the weightless row, as learned or by rule.
     """
 
     result: FlightResult
@@ -50,6 +52,7 @@ class FlightRun:
     calibration: Calibration | None
     acceptances: Mapping[Place, Acceptance]
     methods: tuple[Method, ...]
+    weightless: WeightlessEdges
 
     def rows(self, search: SearchResult) -> dict[str, MethodResult]:
         """A search's rows by their names in JSON."""
@@ -82,16 +85,19 @@ def run_flight(
         jobs: frames located at a time; as many as the machine has cores if not told.
 
     Raises:
-        InputError: a frame cannot be read, or the calibration fails.
+        InputError: a frame cannot be read, or the calibration fails; a position that is needed is not known;
+            no frame shows anything of the map.
     """
+    require_located(calibrating, "calibration takes positions that are known")
+    if any(half is not None for half in searches.values()):
+        require_located(recording.poses, "a window lies around a position that is known")
     progress("map", 0, 1)
     grid = recording.world.resampled()
     progress("map", 1, 1)
     calibration = calibrated(recording, calibrating, progress) if calibrating else None
-    flight = [pose.frame for pose in (*recording.poses, *calibrating)]
 
-    def camera_at(pose: Pose) -> Camera:
-        return calibration.camera_at(pose.frame, flight) if calibration else recording.camera
+    def cameras_at(pose: Pose) -> tuple[Camera, ...]:
+        return calibration.cameras_at(pose.frame) if calibration else (recording.camera,)
 
     coarse = recording.world.resampled(GSD_M)
     if heading_deg is None:
@@ -99,7 +105,8 @@ def run_flight(
     tolerance = PoseTolerance(heading_deg, scale)
     if calibrating:
         sightings = (
-            _sighting(coarse, recording.read(pose), pose, camera_at(pose), tolerance) for pose in calibrating
+            _sighting(coarse, recording.read(pose), pose, cameras_at(pose)[0], tolerance)
+            for pose in calibrating
         )
         weightless = learn(coarse.image, coarse.valid, sightings)
     else:
@@ -112,10 +119,16 @@ def run_flight(
             kind: None if half is None else (pose.latitude_deg, pose.longitude_deg, half)
             for kind, half in searches.items()
         }
-        return navigator.locate(recording.read(pose), pose, camera_at(pose), windows, tolerance)
+        return navigator.locate(recording.read(pose), pose, cameras_at(pose), windows, tolerance)
 
     known = list(_in_parallel(locate, calibrating, jobs, "thresholds", progress))
     found = list(_in_parallel(locate, recording.poses, jobs, "frames", progress))
+    if not any(one[place] for one in found for place in one):
+        raise InputError(
+            "no frame shows anything of the map",
+            value=recording.map_name,
+            mend="check the positions, the heights and the camera",
+        )
     searched, acceptances = [], {}
     for kind, half in searches.items():
         rows, tracks = [], []
@@ -137,7 +150,7 @@ def run_flight(
         calibrated_on=tuple(pose.frame for pose in calibrating),
         searches=tuple(searched),
     )
-    return FlightRun(result, grid, calibration, acceptances, methods)
+    return FlightRun(result, grid, calibration, acceptances, methods, weightless)
 
 
 def calibrated(recording: Recording, calibrating: Sequence[Pose], progress: Progress) -> Calibration:
@@ -168,14 +181,17 @@ def _in_parallel(
 ) -> Iterator[T]:
     """Results in order. Threads, since they share the map and spend their time in OpenCV and NumPy.
 
-    OpenCV gets no threads besides, whose time would be counted to no frame.
+    OpenCV gets no threads besides, whose time would be counted to no frame. However it ends, no thread is
+    left behind: one inside OpenCV while Python goes down would abort the process.
     """
-    workers = Parallel(n_jobs=jobs or os.cpu_count() or 1, prefer="threads", return_as="generator")
+    workers = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
+    progress(step, 0, len(poses))
     try:
-        for done, result in enumerate(workers(delayed(locate)(pose) for pose in poses), start=1):
+        for done, result in enumerate(workers.map(locate, poses), start=1):
             progress(step, done, len(poses))
             yield result
     finally:
+        workers.shutdown(cancel_futures=True)
         cv2.setNumThreads(threads)

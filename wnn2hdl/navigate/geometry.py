@@ -31,6 +31,9 @@ from wnn2hdl.ir.window import SIDE
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.poses import Pose
 
+MOST_PIXELS = 8 << 20
+"""Of a patch: matching one takes some 2.5 GB."""
+
 MAX_OBLIQUE_DEG = 75.0
 """Ground seen at a flatter angle from straight down is left out: a pixel there covers 15 times the ground."""
 
@@ -110,7 +113,7 @@ def ground_patch(frame: NDArray[np.uint8], pose: Pose, camera: Camera, gsd_m: fl
     """
     camera = camera.scaled(frame.shape[1], frame.shape[0])
     rotation = np.asarray(_GROUND_TO_PATCH @ camera_to_ground(pose, camera))
-    return _laid(frame, camera, rotation, pose.height_m, gsd_m, _footprint(camera, rotation, pose))
+    return _laid(frame, camera, rotation, pose, gsd_m, _footprint(camera, rotation, pose))
 
 
 def rotated_patch(frame: NDArray[np.uint8], pose: Pose, camera: Camera, gsd_m: float) -> Patch:
@@ -127,17 +130,24 @@ def _laid(
     frame: NDArray[np.uint8],
     camera: Camera,
     rotation: NDArray[np.float64],
-    height_m: float,
+    pose: Pose,
     gsd_m: float,
     box: tuple[float, float, float, float],
 ) -> Patch:
+    height_m = pose.height_m
     west, north, east, south = box
     columns, rows = (math.ceil(extent / gsd_m) for extent in (east - west, south - north))
     if min(columns, rows) < SIDE:
         raise InputError(
-            f"a frame shows less than {SIDE}x{SIDE} pixels of ground to find edges in",
+            f"the frame {pose.frame} shows less than {SIDE}x{SIDE} pixels of ground to find edges in",
             value=f"{columns}x{rows} of {gsd_m:g} m",
             mend="check the focal length, the heights and the map's ground sample distance",
+        )
+    if columns * rows > MOST_PIXELS:
+        raise InputError(
+            f"the frame {pose.frame} shows more than {MOST_PIXELS >> 20} million pixels of ground",
+            value=f"{columns}x{rows} of {gsd_m:g} m",
+            mend="check its height and the focal length, or give a coarser map",
         )
     middle = ((west + east) / 2, (north + south) / 2)
     focal = height_m / gsd_m

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import ParamSpec, TypeVar
 
 import numpy as np
@@ -11,11 +12,11 @@ from numpy.typing import NDArray
 
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.geometry import Patch, ground_patch, rotated_patch
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.matching import Match, Peak, Window
 from wnn2hdl.navigate.methods import Method
 from wnn2hdl.navigate.poses import Pose
 from wnn2hdl.navigate.results import SearchKind
-from wnn2hdl.navigate.world import MapGrid
 
 Place = tuple[SearchKind, str]
 """A search by its kind and a method by its key."""
@@ -70,7 +71,7 @@ class Located:
 
     Attributes:
         match: of the point below the UAV, in whole pixels of the method's grid; its peaks are the best over
-            all poses that were tried.
+            all poses and cameras that were tried.
         places: metres east and north of the map's middle, of each peak.
         seconds: processor time for laying the frame out, describing and searching, over all poses.
     """
@@ -108,7 +109,7 @@ class Navigator:
         self,
         frame: NDArray[np.uint8],
         pose: Pose,
-        camera: Camera,
+        cameras: Sequence[Camera],
         windows: Mapping[SearchKind, tuple[float, float, float] | None],
         tolerance: PoseTolerance = EXACT,
     ) -> dict[Place, Located | None]:
@@ -117,7 +118,7 @@ class Navigator:
         Args:
             frame: uint8 ``[height, width, 3]``.
             pose: its height and angles; its position is not looked at.
-            camera: that took it.
+            cameras: any of which may have taken it; each is tried.
             windows: for each search by kind, latitude, longitude and half side in metres of the square in
                 which the UAV is; None for the whole map.
             tolerance: how far the pose may be off.
@@ -130,7 +131,7 @@ class Navigator:
             (search, method.key): [] for search in windows for method in self._methods
         }
         seconds = dict.fromkeys(found, 0.0)
-        for tried in tolerance.poses(pose):
+        for camera, tried in product(cameras, tolerance.poses(pose)):
             laid = {
                 (perspective, gsd_m): _timed(
                     ground_patch if perspective else rotated_patch,

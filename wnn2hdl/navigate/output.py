@@ -150,11 +150,13 @@ def frames_csv(result: FlightResult) -> str:
 def fix_features(search: SearchResult) -> list[dict[str, Any]]:
     """The truth and every position as GeoJSON point features (RFC 7946: longitude first, WGS 84).
 
-    Positions have eight decimals, about a millimetre. The truth's ``method`` is "truth".
+    Those not known are left out. Positions have eight decimals, about a millimetre. The truth's ``method`` is
+    "truth".
     """
     features = [
         _point(fix.truth_longitude, fix.truth_latitude, {"method": "truth", "frame": fix.frame})
         for fix in (search.methods[0].fixes if search.methods else ())
+        if fix.truth_latitude is not None and fix.truth_longitude is not None
     ]
     for method in search.methods:
         features += [
@@ -234,7 +236,18 @@ def _search_sections(search: SearchResult) -> list[str]:
             ["method", "frames", "fixed", f"fixes < {FAR_M:g} m", "mean error of fixes m", "s a frame"],
             confident,
         ),
+        _without_fix(search),
     ]
+
+
+def _without_fix(search: SearchResult) -> str:
+    silent = [method.name for method in search.methods if not method.fixed_percent]
+    if not silent:
+        return ""
+    return (
+        f"No fix is given by {', '.join(silent)}: by what the calibration's frames tell, none of their "
+        "positions is sure enough. More frames to calibrate on, ten or more, often help."
+    )
 
 
 def _figures(name: str, row: MethodResult | PublishedMethod) -> list[str]:

@@ -100,13 +100,13 @@ def _mean_and_std(mean: float | None, std: float | None) -> str:
 def plot_tracks(
     search: SearchResult, picture: NDArray[np.uint8], to_pixel: ToPixel, gsd_m: float, path: Path
 ) -> tuple[Path, Path]:
-    """The true track and each method's positions on the map, cut to where they are.
+    """The true track, as far as it is known, and each method's positions on the map, cut to where they are.
 
     Filled marks are fixes, hollow ones positions that were not confident enough to be given; a frame without
     a position has none.
 
     Args:
-        search: at least one method and one frame.
+        search: at least one method, and one frame whose truth or position is known.
         picture: uint8 ``[rows, columns, 3]``, the map, north up.
         to_pixel: where positions lie in it.
         gsd_m: metres a pixel.
@@ -119,7 +119,8 @@ def plot_tracks(
         InputError: the folder does not exist or cannot be written.
     """
     fixes = search.methods[0].fixes
-    truth = to_pixel([fix.truth_latitude for fix in fixes], [fix.truth_longitude for fix in fixes])
+    known = [(fix.truth_latitude, fix.truth_longitude) for fix in fixes if fix.truth_latitude is not None]
+    truth = to_pixel(*np.array(known, dtype=np.float64).reshape(-1, 2).T)
     tracks = [_located(method.fixes, to_pixel) for method in search.methods]
     places = [np.concatenate([truth[i], *(track[i] for track in tracks)]) for i in (0, 1)]
     least = max(_LEAST_SIDE_M / gsd_m, _LEAST_ASPECT * max(float(np.ptp(side)) for side in places))
@@ -135,8 +136,9 @@ def plot_tracks(
     # Half a pixel around, since whole numbers are centres of pixels. Paler, to let the tracks stand out.
     axes.imshow(shown, extent=(left - 0.5, right - 0.5, bottom - 0.5, top - 0.5), alpha=0.75)
     outline = [withStroke(linewidth=5.5, foreground="black")]
-    axes.plot(truth[1], truth[0], "-", color="white", linewidth=3.5, path_effects=outline, label="truth")
-    axes.plot(truth[1], truth[0], "o", color="white", markeredgecolor="black", markersize=7)
+    if known:
+        axes.plot(truth[1], truth[0], "-", color="white", linewidth=3.5, path_effects=outline, label="truth")
+        axes.plot(truth[1], truth[0], "o", color="white", markeredgecolor="black", markersize=7)
     for place, (method, (rows, columns, fixed)) in enumerate(zip(search.methods, tracks, strict=True)):
         colour, marker = COLOURS[place % len(COLOURS)], _MARKERS[place % len(_MARKERS)]
         under = [withStroke(linewidth=2.4, foreground="black")]

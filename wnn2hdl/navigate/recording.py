@@ -1,6 +1,6 @@
 """What a flight brought home: a map, a camera, frames and their poses; from files, or the embedded one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import picture_size, read_rgb
 from wnn2hdl.navigate.camera import Camera
-from wnn2hdl.navigate.poses import Pose, frame_files
+from wnn2hdl.navigate.poses import Pose
 from wnn2hdl.navigate.world import WorldMap
 from wnn2hdl.samples.flight import make_flight
 
@@ -41,24 +41,26 @@ class Recording:
     read: Callable[[Pose], NDArray[np.uint8]]
 
     @classmethod
-    def of_files(cls, map_file: Path, frames: Path, poses: Sequence[Pose], camera: Camera | float) -> Self:
+    def of_files(cls, map_file: Path, files: Mapping[Pose, Path], camera: Camera | float) -> Self:
         """A recording whose frames are read when they are wanted.
 
         Args:
             map_file: a GeoTIFF.
-            frames: folder of the frames.
-            poses: at least one.
-            camera: the camera, or its focal length in pixels of the frames.
+            files: the file of each frame, at least one, in the order of the flight.
+            camera: the camera, or its focal length in pixels of the first frame.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
             InputError: the map or a frame is missing or cannot be used, or has not the camera's shape.
         """
         world = WorldMap.read(map_file)
-        height, width = picture_size(frame_files(tuple(poses), frames)[0])
+        sizes = {file: picture_size(file) for file in files.values()}
+        height, width = next(iter(sizes.values()))
         known = camera if isinstance(camera, Camera) else Camera.of_focal(camera, width, height)
+        for file, (rows, columns) in sizes.items():
+            known.require_shape(columns, rows, file.name)
         scaled = known.scaled(width, height)
-        return cls(map_file.name, world, scaled, tuple(poses), lambda pose: read_rgb(frames / pose.frame))
+        return cls(map_file.name, world, scaled, tuple(files), lambda pose: read_rgb(files[pose]))
 
     @classmethod
     def embedded(cls, seed: int) -> Self:

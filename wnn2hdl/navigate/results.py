@@ -31,12 +31,12 @@ class FrameFix:
 
     Attributes:
         frame: name of the frame's file.
-        truth_latitude: degrees, where the UAV was.
-        truth_longitude: degrees.
+        truth_latitude: degrees, where the UAV was; None where nobody knows.
+        truth_longitude: degrees, or None together with ``truth_latitude``.
         latitude: degrees, where the method puts it; None if the method has no position at all to offer
             (the frame shows nothing to match, or a filter has not started).
         longitude: degrees, or None together with ``latitude``.
-        error_m: metres between the two by great circle; None without a position.
+        error_m: metres between the two by great circle; None without either position.
         geodesic_error_m: the same on the ellipsoid.
         confidence: the method's own measure; compare it within a method only.
         fixed: whether the confidence suffices to give the position out as a fix.
@@ -44,8 +44,8 @@ class FrameFix:
     """
 
     frame: str
-    truth_latitude: float
-    truth_longitude: float
+    truth_latitude: float | None
+    truth_longitude: float | None
     latitude: float | None
     longitude: float | None
     error_m: float | None

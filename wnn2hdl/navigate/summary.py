@@ -11,6 +11,13 @@ from wnn2hdl.navigate.output import write_results
 from wnn2hdl.navigate.plots import plot_errors, plot_tracks
 from wnn2hdl.navigate.results import FIGURES, MethodResult, SearchResult
 
+_KINDS = (
+    "errors.*",
+    "calibration.json",
+    *(f"{kind}_{search}.*" for kind in ("fixes", "tracks") for search in ("map", "window_*m")),
+)
+"""Files that not every run writes."""
+
 
 def summary(run: FlightRun) -> dict[str, Any]:
     """What ``locate --json`` prints.
@@ -32,7 +39,9 @@ def summary(run: FlightRun) -> dict[str, Any]:
 
 
 def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
-    """Write tables, GeoJSON, plots of errors and tracks, and the calibration.
+    """Write tables, GeoJSON, plots of errors and tracks, and what was learned; an earlier run's files go.
+
+    Where no truth is known there are no errors to plot.
 
     Returns:
         the files written.
@@ -40,15 +49,21 @@ def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
     Raises:
         InputError: the folder cannot be written.
     """
-    files = [*write_results(folder, run.result), *plot_errors(run.result, folder / "errors")]
+    files = [*write_results(folder, run.result)]
+    if any(method.errors_m for search in run.result.searches for method in search.methods):
+        files += plot_errors(run.result, folder / "errors")
     for search in run.result.searches:
         raw = replace(search, methods=tuple(method for method in search.methods if not method.tracked))
         files += plot_tracks(
             raw, run.grid.image, run.grid.to_pixel, run.grid.gsd_m, folder / f"tracks_{search.key}"
         )
     if run.calibration:
-        write_json(folder / "calibration.json", run.calibration.report())
+        learned = run.calibration.report() | {"weightless": run.weightless.to_json()}
+        write_json(folder / "calibration.json", learned)
         files.append(folder / "calibration.json")
+    for pattern in _KINDS:
+        for file in {*folder.glob(pattern)} - {*files}:
+            file.unlink()
     return tuple(files)
 
 

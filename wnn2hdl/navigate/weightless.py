@@ -21,13 +21,13 @@ are combined by adding their sums, as `wnn2hdl.navigate.channels.ChannelIndex` d
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import InputError, ModelFileError
+from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WINDOW_BITS, WINDOW_CODES, EdgeFilter, bits_to_codes, codes_to_bits, window_codes
 from wnn2hdl.navigate.binarise import binary_images
 from wnn2hdl.navigate.channels import ChannelIndex, Channels
@@ -110,19 +110,8 @@ class WeightlessEdges:
         return np.asarray(edges & inside), np.asarray(inside)
 
     def to_json(self) -> dict[str, Any]:
-        """A JSON object of all three attributes."""
+        """A JSON object of all three attributes, for reports."""
         return {"gsd_m": self.gsd_m, "side": self.side, "east": self.east.to_json()}
-
-    @classmethod
-    def from_json(cls, data: dict[str, Any]) -> Self:
-        """The inverse of `to_json`; raises `ModelFileError` on anything else."""
-        try:
-            gsd_m, side = float(data["gsd_m"]), data["side"]
-            if gsd_m <= 0 or type(side) is not int or side < 1 or side % 2 == 0:
-                raise ValueError("gsd_m must be above 0 and side an odd number of pixels")
-            return cls(gsd_m, side, EdgeFilter.from_json(data["east"]))
-        except (KeyError, TypeError, ValueError) as error:
-            raise ModelFileError("these are no weightless edges", value=error) from error
 
 
 def by_rule(gsd_m: float = GSD_M) -> WeightlessEdges:

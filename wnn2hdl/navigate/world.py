@@ -1,4 +1,4 @@
-"""The map: a georeferenced picture, and the north-up metric grid that matching happens on."""
+"""The map: a georeferenced picture, laid out as the grid that matching happens on."""
 
 import warnings
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.ir.window import SIDE
+from wnn2hdl.navigate.grid import MapGrid, local_crs, transformer
 
 if TYPE_CHECKING:
     from affine import Affine
@@ -27,65 +28,6 @@ _VOID_SHARE = 0.001
 
 _MOST_PIXELS = 1 << 30
 """Of a grid: its picture takes 3 GB then."""
-
-
-@dataclass(frozen=True)
-class MapGrid:
-    """A piece of the world, north up, with square pixels of a known size in metres.
-
-    It lies in the azimuthal equidistant projection of the WGS 84 ellipsoid about its own middle (PROJ's
-    ``aeqd``). Measured against geodesics on a map of 5 km by 5 km: distances are within 5e-8 (5 micrometres
-    in 100 m), and at its corners north turns from up by 0.010 degrees at latitude 24, 0.020 at 41 and 0.039
-    at 60.
-
-    Pixel coordinates are (row, column), row south and column east; whole numbers are centres of pixels.
-
-    Attributes:
-        image: uint8 ``[rows, columns, 3]``: red, green, blue; 0 where not valid.
-        valid: bool ``[rows, columns]``: the map shows this pixel.
-        gsd_m: ground sample distance, metres a pixel.
-        origin_m: metres east and north of the centre of pixel (0, 0) from the middle.
-        latitude_deg: of the middle.
-        longitude_deg: of the middle.
-    """
-
-    image: NDArray[np.uint8]
-    valid: NDArray[np.bool_]
-    gsd_m: float
-    origin_m: tuple[float, float]
-    latitude_deg: float
-    longitude_deg: float
-
-    @cached_property
-    def _projection(self) -> "Transformer":
-        return _transformer(_local_crs(self.latitude_deg, self.longitude_deg))
-
-    def to_pixel(
-        self, latitude: ArrayLike, longitude: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Rows and columns, float64, of positions in degrees (numbers, or arrays of one shape)."""
-        east, north = self._projection.transform(np.asarray(longitude, float), np.asarray(latitude, float))
-        return self.from_metres(east, north)
-
-    def to_geographic(
-        self, row: ArrayLike, column: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Latitudes and longitudes, float64 degrees, of pixel coordinates."""
-        east, north = self.to_metres(row, column)
-        longitude, latitude = self._projection.transform(east, north, direction="INVERSE")
-        return np.asarray(latitude), np.asarray(longitude)
-
-    def to_metres(self, row: ArrayLike, column: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Metres east and north of the middle: the same for grids of one map at any sample distance."""
-        east = self.origin_m[0] + np.asarray(column, float) * self.gsd_m
-        return east, self.origin_m[1] - np.asarray(row, float) * self.gsd_m
-
-    def from_metres(
-        self, east: ArrayLike, north: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Rows and columns: the inverse of `to_metres`."""
-        rows = (self.origin_m[1] - np.asarray(north, float)) / self.gsd_m
-        return rows, (np.asarray(east, float) - self.origin_m[0]) / self.gsd_m
 
 
 @dataclass(frozen=True)
@@ -125,6 +67,12 @@ class WorldMap:
                         value=path,
                         mend="give a GeoTIFF with a coordinate system and a transform",
                     )
+                if dataset.colorinterp[0].name == "palette":
+                    raise InputError(
+                        "the map holds indices of a colour table",
+                        value=path,
+                        mend="make it red, green and blue first (gdal_translate -expand rgb)",
+                    )
                 if dataset.dtypes[0] != "uint8":
                     raise InputError(
                         "the map's samples are not 8 bits",
@@ -162,7 +110,7 @@ class WorldMap:
         from pyproj.exceptions import ProjError
 
         try:
-            return _transformer(self.crs.to_wkt())
+            return transformer(self.crs.to_wkt())
         except ProjError as error:
             raise InputError(
                 "the map's coordinate system tells no latitudes and longitudes",
@@ -197,7 +145,7 @@ class WorldMap:
         corners = self.to_geographic(rows + np.array([0, 0, 1]), columns + np.array([0, 1, 0]))
         self._check_on_earth(corners)
         latitude, longitude = (float(axis[0]) for axis in corners)
-        east, north = _transformer(_local_crs(latitude, longitude)).transform(corners[1], corners[0])
+        east, north = transformer(local_crs(latitude, longitude)).transform(corners[1], corners[0])
         across, down = ((east[i], north[i]) for i in (1, 2))
         area = abs(across[0] * down[1] - across[1] * down[0])
         if self.transform.is_degenerate or not area:
@@ -229,7 +177,7 @@ class WorldMap:
         gsd_m = gsd_m or own_m
         middle = self.to_geographic((self.shape[0] - 1) / 2, (self.shape[1] - 1) / 2)
         latitude, longitude = (float(axis) for axis in middle)
-        local = _local_crs(latitude, longitude)
+        local = local_crs(latitude, longitude)
         west, south, east, north = self._extent(local)
         columns, rows = (int((high - low) / gsd_m) for low, high in ((west, east), (south, north)))
         if min(rows, columns) < SIDE:
@@ -284,7 +232,7 @@ class WorldMap:
         )
         latitude, longitude = self.to_geographic(outline[:, 0], outline[:, 1])
         self._check_on_earth((latitude, longitude))
-        east, north = _transformer(local).transform(longitude, latitude)
+        east, north = transformer(local).transform(longitude, latitude)
         return float(min(east)), float(min(north)), float(max(east)), float(max(north))
 
     def _check_on_earth(self, positions: tuple[NDArray[np.float64], NDArray[np.float64]]) -> None:
@@ -330,17 +278,6 @@ def _void(picture: NDArray[np.uint8], plain: int) -> NDArray[np.bool_]:
     border = np.unique(np.concatenate([regions[0], regions[-1], regions[:, 0], regions[:, -1]]))
     large = statistics[:, cv2.CC_STAT_AREA] >= _VOID_SHARE * equal.size
     return np.isin(regions, [region for region in border if region and large[region]])
-
-
-def _local_crs(latitude: float, longitude: float) -> str:
-    return f"+proj=aeqd +lat_0={latitude!r} +lon_0={longitude!r} +datum=WGS84 +units=m +no_defs"
-
-
-def _transformer(crs: str) -> "Transformer":
-    """From longitude and latitude, WGS 84 degrees, to ``crs``."""
-    from pyproj import Transformer
-
-    return Transformer.from_crs("EPSG:4326", crs, always_xy=True)
 
 
 def _rasterio() -> Any:

@@ -1,6 +1,11 @@
 """`wnn2hdl locate`: its bad input, and a run on the embedded flight."""
 
 import json
+import shutil
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +16,8 @@ from wnn2hdl.navigate import recording
 from wnn2hdl.samples.flight import make_flight, write_flight
 
 Run = Callable[..., Any]
+
+COMMAND = [sys.executable, "-c", "import sys; from wnn2hdl.cli import main; sys.exit(main())"]
 
 POSE = "frame,latitude_deg,longitude_deg,height_above_ground_m,yaw_deg,pitch_deg,roll_deg\n"
 
@@ -53,6 +60,53 @@ def test_poses_of_a_file_calibrate_and_are_not_scored(run: Run, folder: Path, tm
     assert data["searches"]["window"]["furthest_m"] == pytest.approx(42.4, abs=0.1)
 
 
+def test_frames_to_calibrate_on_may_lie_elsewhere(run: Run, folder: Path, tmp_path: Path) -> None:
+    lines = (folder / "poses.csv").read_text().splitlines()
+    (tmp_path / "new").mkdir()
+    names = [line.split(",")[0] for line in lines[1:]]
+    # The camera counted anew: the same name, another frame.
+    for number, name in enumerate(names[3:], start=1):
+        (tmp_path / "new" / f"frame_{number}.jpg").write_bytes((folder / "frames" / name).read_bytes())
+    new, known = tmp_path / "new.csv", tmp_path / "known.csv"
+    unknown = [f"frame_{number},,,{line.split(',', 3)[3]}" for number, line in enumerate(lines[4:], start=1)]
+    new.write_text("\n".join([lines[0], *(line.replace(",", ".jpg,", 1) for line in unknown)]) + "\n")
+    known.write_text("\n".join(lines[:4]) + "\n")
+    flight = ("--map", folder / "map.tif", "--frames", tmp_path / "new", "--poses", new, "--focal", 120)
+    calibrating = ("--calibrate", known, "--calibrate-frames", folder / "frames")
+    done = run("locate", *flight, *calibrating, "--search", "map", "-o", tmp_path / "out", "--json")
+    assert done.status == 0, done.stderr
+    data = json.loads(done.stdout)
+    assert data["frames"] == 2
+    assert data["calibration"]["frames"] == names[:3]
+    assert data["methods"]["perspective-weightless"]["mean_m"] is None
+    refusal = run("locate", *flight, *calibrating, "-o", tmp_path / "out").complaint()
+    assert "a window lies around a position that is known, and a frame has none: frame_1.jpg" in refusal
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stop", ["frame", "interrupt"])
+def test_no_thread_is_left_behind_when_it_ends_early(folder: Path, tmp_path: Path, stop: str) -> None:
+    """A thread inside OpenCV while Python goes down would abort the process."""
+    frames = Path(shutil.copytree(folder / "frames", tmp_path / "frames"))
+    if stop == "frame":
+        last = sorted(frames.iterdir())[2]
+        last.write_bytes(last.read_bytes()[: last.stat().st_size // 2])
+    words = ["locate", "--map", folder / "map.tif", "--frames", frames, "--poses", folder / "poses.csv"]
+    words += ["--focal", 120, "--heading-tolerance", 30, "--jobs", 4, "-o", tmp_path / "out"]
+    running = subprocess.Popen(
+        [*COMMAND, *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    if stop == "interrupt":
+        time.sleep(6)
+        running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=120)
+    assert running.returncode == (2 if stop == "frame" else 130), told
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_embedded_flight_needs_no_files(
     run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -70,7 +124,8 @@ def test_the_embedded_flight_needs_no_files(
         (["--map", "map.tif"], "these options go together: --map, --frames, --poses; give --frames, --poses"),
         (["--focal", "750"], "the embedded flight has its own camera: --focal"),
         (["--calibrate", "some.csv"], "the embedded flight has no file of poses"),
-        (["--calibrate", "2"], "too few to calibrate on"),
+        (["--calibrate", "3"], "3 frames are too few to calibrate on; give at least 4"),
+        (["--calibrate-frames", "."], "--calibrate-frames are those of a CSV of --calibrate"),
         (["--calibrate", "all"], "neither a count nor a CSV"),
         (["--calibrate", "9"], "too few frames are left to score: 9 of 10 calibrate"),
         (["--window", "0"], "--window"),

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from wnn2hdl.navigate.camera import Camera
-from wnn2hdl.navigate.poses import read_poses
+from wnn2hdl.navigate.poses import frame_files, read_poses
 from wnn2hdl.navigate.recording import Recording
 from wnn2hdl.samples import CLASSES
 
@@ -36,6 +36,6 @@ def test_a_flight_is_written_as_it_is_read(run: Run, tmp_path: Path) -> None:
     }
     poses = read_poses(folder / "poses.csv")
     camera = Camera.read(folder / "camera.toml")
-    recording = Recording.of_files(folder / "map.tif", folder / "frames", poses, camera)
+    recording = Recording.of_files(folder / "map.tif", frame_files(poses, folder / "frames"), camera)
     assert recording.world.gsd_m == pytest.approx(0.5, abs=0.001)
     assert [recording.read(pose).shape for pose in recording.poses] == [(camera.height, camera.width, 3)] * 2

@@ -8,11 +8,11 @@ import pytest
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.navigate.calibrate import Calibration, calibrate, flight_order
+from wnn2hdl.navigate.calibrate import Calibration, calibrate
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.geometry import camera_to_ground
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.poses import Pose
-from wnn2hdl.navigate.world import MapGrid
 
 GUESS = Camera.of_focal(150, 200, 150)
 HEIGHT_M = 100.0
@@ -98,9 +98,9 @@ def test_finds_where_the_tilt_was_set_anew() -> None:
     found = fitted(grid, cameras, poses)
     assert [frame for frame, _ in found.stretches] == ["f0.png", "f6.png"]
     assert [tilt for _, tilt in found.stretches] == pytest.approx([9, 1], abs=0.8)
-    flight = [f"f{number}.png" for number in range(20)]
-    assert found.camera_at("f5.png", flight).tilt_deg == pytest.approx(9, abs=0.8)
-    assert found.camera_at("f17.png", flight).tilt_deg == pytest.approx(1, abs=0.8)
+    early, late = found.cameras[0], found.cameras[-1]
+    assert found.cameras_at("f5.png") == (early,)
+    assert found.cameras_at("f17.png") == (late,)
 
 
 def test_a_log_of_bad_headings_asks_for_a_search() -> None:
@@ -130,6 +130,15 @@ def test_too_little_to_calibrate_on_is_refused() -> None:
         )
 
 
-def test_the_order_of_flight_counts_numbers() -> None:
-    names = ["IMG_10.jpg", "IMG_9.jpg", "IMG_9b.jpg", "IMG_0100.jpg"]
-    assert sorted(names, key=flight_order) == ["IMG_9.jpg", "IMG_9b.jpg", "IMG_10.jpg", "IMG_0100.jpg"]
+def test_a_frame_has_the_camera_of_its_stretch_or_of_either_beside_it() -> None:
+    early, late = replace(GUESS, tilt_deg=9), replace(GUESS, tilt_deg=1)
+    frames = ("IMG_008.jpg", "IMG_012.jpg", "IMG_100.jpg")
+    found = Calibration(frames, (early, early, late), 0.0, (), ())
+    assert found.cameras_at("IMG_001.jpg") == (early,)
+    assert found.cameras_at("IMG_9.jpg") == (early,)
+    assert found.cameras_at("IMG_012.jpg") == (early,)
+    assert found.cameras_at("IMG_013.jpg") == (early, late)
+    assert found.cameras_at("IMG_100.jpg") == (late,)
+    assert found.cameras_at("IMG_101.jpg") == (late,)
+    for name in ("DJI_013.jpg", "last.jpg"):
+        assert found.cameras_at(name) == (early, late), "where it lies is not told"

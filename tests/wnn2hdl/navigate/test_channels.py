@@ -1,5 +1,8 @@
 """Matching of several binary images at once: against the map index of one picture, and by brute force."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -73,6 +76,29 @@ def test_windows_of_one_size_do_not_share_spectra() -> None:
         match = index.search(piece, np.ones((20, 20), dtype=np.bool_), window=window)
         assert match is not None
         assert (match.row, match.col) == (row, column)
+
+
+def test_threads_may_search_at_once() -> None:
+    rng = np.random.default_rng(6)
+    ground = rng.random((2, 60, 60)) < 0.3
+    index = ChannelIndex(ground, np.ones((60, 60), dtype=np.bool_))
+    places = rng.integers(0, 50, (200, 2)).tolist()
+
+    def search(place: list[int]) -> list[int]:
+        row, column = place
+        cut = np.ascontiguousarray(ground[:, row : row + 9, column : column + 9])
+        window = Window(row - 3, column - 3, row + 4, column + 4)
+        match = index.search(cut, np.ones(cut.shape[1:], dtype=np.bool_), "ncc", window)
+        assert match is not None
+        return [match.row, match.col]
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(search, places)) == places
+    finally:
+        sys.setswitchinterval(interval)
 
 
 def test_a_template_may_reach_beyond_the_map_as_far_as_the_overlap_allows() -> None:

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from wnn2hdl.navigate.fixes import UNCALIBRATED, accepted, fixes, tracked
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.matching import Acceptance, Match, Peak
 from wnn2hdl.navigate.navigator import Located
 from wnn2hdl.navigate.poses import Pose
-from wnn2hdl.navigate.world import MapGrid
 
 GRID = MapGrid(
     np.zeros((1000, 1000, 3), np.uint8), np.ones((1000, 1000), np.bool_), 1.0, (-500.0, 500.0), 24.0, 120.0
@@ -122,3 +122,13 @@ def test_a_track_that_starts_at_a_wrong_match_is_no_fix() -> None:
     ]
     for half_width_m in (None, 95.0):
         assert not any(fix.fixed for fix in tracked(GRID, poses, strays, UNCALIBRATED, half_width_m))
+
+
+def test_a_track_does_not_leave_the_window_that_the_uav_is_in() -> None:
+    poses = [pose(20 * i, 0, i) for i in range(6)]
+    aside: list[Located | None] = [located((20.0 * i, 0.0), heights=(8,)) for i in range(5)]
+    track = tracked(GRID, [*poses[:5], pose(300, 0, 5)], [*aside, None], UNCALIBRATED, 95.0)
+    assert track[4].error_m == pytest.approx(0, abs=1)
+    assert track[5].latitude is None
+    whole = tracked(GRID, [*poses[:5], pose(300, 0, 5)], [*aside, None], UNCALIBRATED, None)
+    assert whole[5].error_m == pytest.approx(200, abs=20)

@@ -1,13 +1,15 @@
 """A whole run over a small rendered flight, and over the real one."""
 
+import math
 from pathlib import Path
 from typing import Any
 
 import cv2
 import pytest
 
+from wnn2hdl.errors import InputError
 from wnn2hdl.navigate.flight import FlightRun, run_flight
-from wnn2hdl.navigate.poses import read_poses
+from wnn2hdl.navigate.poses import frame_files, read_poses
 from wnn2hdl.navigate.recording import Recording, split
 
 
@@ -39,6 +41,22 @@ def test_where_scored_frames_were_makes_no_difference_on_the_whole_map(run: Flig
             assert (one.confidence, one.fixed) == (other.confidence, other.fixed)
 
 
+def test_a_position_that_is_not_known_is_not_needed_on_the_whole_map(run: FlightRun, flying: Any) -> None:
+    unknown = flying({"map": None}, aside_deg=math.nan)
+    for method, known in zip(unknown.result.searches[0].methods, run.result.searches[1].methods, strict=True):
+        assert method.mean_m is None
+        for one, other in zip(method.fixes, known.fixes, strict=True):
+            assert (one.truth_latitude, one.error_m, one.geodesic_error_m) == (None, None, None)
+            assert (one.latitude, one.longitude, one.fixed) == (other.latitude, other.longitude, other.fixed)
+    with pytest.raises(InputError, match="a window lies around a position that is known"):
+        flying({"window": 40.0}, aside_deg=math.nan)
+
+
+def test_a_flight_beside_the_map_is_refused(flying: Any) -> None:
+    with pytest.raises(InputError, match="no frame shows anything of the map: rendered"):
+        flying({"window": 40.0}, aside_deg=1)
+
+
 def test_progress_is_told(run: FlightRun, flying: Any) -> None:
     assert {step for step, _, _ in flying.steps} == {"map", "calibration", "thresholds", "frames"}
     assert flying.steps[-1] == ("frames", 3, 3)
@@ -61,7 +79,9 @@ def test_weightless_edges_locate_the_real_flight(realdata: Path) -> None:
     """Half the best published mean over the whole map, on frames that nothing was fitted on."""
     folder = realdata / "flight_fengyuan"
     calibrating, scored = split(read_poses(folder / "poses.csv"), 10)
-    recording = Recording.of_files(folder / "map.tif", folder / "frames", scored[::2], 750.0)
+    recording = Recording.of_files(
+        folder / "map.tif", frame_files((*scored[::2], *calibrating), folder / "frames"), 750.0
+    ).scoring(scored[::2])
     found = run_flight(recording, calibrating, {"map": None}, lambda *_: None)
     row = found.rows(found.result.searches[0])["perspective-weightless"]
     assert row.mean_m is not None

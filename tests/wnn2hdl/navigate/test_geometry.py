@@ -180,3 +180,9 @@ def test_a_frame_of_too_little_ground_is_refused() -> None:
         InputError, match="shows less than 3x3 pixels of ground to find edges in: 2x2 of 60 m"
     ):
         ground_patch(frame, pose(), CAMERA, 60.0)
+
+
+def test_a_frame_of_too_much_ground_is_refused() -> None:
+    frame = np.full((360, 480), 255, dtype=np.uint8)
+    with pytest.raises(InputError, match="frame f shows more than 8 million pixels of ground"):
+        ground_patch(frame, replace(pose(), frame="f", height_m=9_000), CAMERA, 0.5)

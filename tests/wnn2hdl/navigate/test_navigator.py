@@ -7,11 +7,12 @@ import pytest
 from numpy.typing import NDArray
 
 from wnn2hdl.navigate.camera import Camera
+from wnn2hdl.navigate.grid import MapGrid
 from wnn2hdl.navigate.methods import compared_methods
 from wnn2hdl.navigate.navigator import HEADING_STEP_DEG, SCALE_STEP, Located, Navigator, PoseTolerance
 from wnn2hdl.navigate.poses import Pose
 from wnn2hdl.navigate.weightless import GSD_M, by_rule
-from wnn2hdl.navigate.world import MapGrid, WorldMap
+from wnn2hdl.navigate.world import WorldMap
 from wnn2hdl.samples.flight import Flight, make_flight
 
 
@@ -56,7 +57,7 @@ def test_every_method_with_perspective_is_right_on_both_searches(
 ) -> None:
     frame, pose, camera = seen(flight)
     window = (pose.latitude_deg, pose.longitude_deg, 60.0)
-    found = navigator.locate(frame, pose, camera, {"window": window, "map": None})
+    found = navigator.locate(frame, pose, (camera,), {"window": window, "map": None})
     assert len(found) == 10
     for (search, method), located in found.items():
         if method != "rotation-canny":
@@ -71,7 +72,7 @@ def test_a_window_bounds_the_error(
     frame, pose, camera = seen(flight)
     aside = grids[None].to_pixel(pose.latitude_deg, pose.longitude_deg)
     latitude, longitude = grids[None].to_geographic(aside[0] + 60, aside[1])
-    found = navigator.locate(frame, pose, camera, {"window": (float(latitude), float(longitude), 10.0)})
+    found = navigator.locate(frame, pose, (camera,), {"window": (float(latitude), float(longitude), 10.0)})
     for located in found.values():
         assert located is None or 30 - 10 - 2 <= miss_m(grids[None], pose, located) <= 30 * 2
 
@@ -81,7 +82,7 @@ def test_a_wrong_heading_is_searched_for(
 ) -> None:
     frame, pose, camera = seen(flight, yaw_error=17)
     window = (pose.latitude_deg, pose.longitude_deg, 60.0)
-    found = navigator.locate(frame, pose, camera, {"window": window}, PoseTolerance(heading_deg=18))
+    found = navigator.locate(frame, pose, (camera,), {"window": window}, PoseTolerance(heading_deg=18))
     for method in ("perspective-weightless", "grey"):
         assert miss_m(grids[None], pose, found["window", method]) < 4
 
@@ -91,7 +92,7 @@ def test_a_frame_beside_the_map_is_not_located(
 ) -> None:
     frame, pose, camera = seen(flight)
     found = navigator.locate(
-        frame, pose, camera, {"window": (pose.latitude_deg + 1, pose.longitude_deg, 60.0)}
+        frame, pose, (camera,), {"window": (pose.latitude_deg + 1, pose.longitude_deg, 60.0)}
     )
     assert set(found.values()) == {None}
 
@@ -100,7 +101,7 @@ def test_a_frame_that_shows_nothing_is_not_located(flight: Flight, navigator: Na
     _, pose, camera = seen(flight)
     blank = np.full((180, 320, 3), 90, np.uint8)
     window = (pose.latitude_deg, pose.longitude_deg, 60.0)
-    found = navigator.locate(blank, pose, camera, {"window": window, "map": None})
+    found = navigator.locate(blank, pose, (camera,), {"window": window, "map": None})
     assert set(found.values()) == {None}
 
 
@@ -112,7 +113,7 @@ def test_a_wrong_height_is_searched_for(
     window = (pose.latitude_deg, pose.longitude_deg, 60.0)
     scores = []
     for tolerance in (PoseTolerance(), PoseTolerance(scale=0.15)):
-        located = navigator.locate(frame, high, camera, {"window": window}, tolerance)["window", "grey"]
+        located = navigator.locate(frame, high, (camera,), {"window": window}, tolerance)["window", "grey"]
         assert located is not None
         scores.append(located.match.score)
     assert scores[1] > scores[0] + 0.1

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -69,6 +70,13 @@ def test_markdown_says_what_window_camera_and_distance_mean() -> None:
     assert "the population's" in page
     assert "at most 0.25 m" in page
     assert "searched over the whole map" in page.lower()
+
+
+def test_markdown_names_the_methods_that_give_no_fix() -> None:
+    unsure = MethodResult("grey levels", (fix(1, 4.0, confidence=0.1),))
+    page = flight_markdown(replace(RESULT, searches=(SearchResult("map", None, (EDGES, unsure)),)))
+    assert "No fix is given by grey levels: " in page
+    assert "No fix" not in flight_markdown(RESULT)
 
 
 def test_a_method_without_positions_shows_no_figures() -> None:

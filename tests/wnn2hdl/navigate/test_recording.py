@@ -8,7 +8,7 @@ from PIL import Image
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.navigate.camera import Camera
-from wnn2hdl.navigate.poses import Pose
+from wnn2hdl.navigate.poses import Pose, frame_files
 from wnn2hdl.navigate.recording import Recording, split
 from wnn2hdl.samples.flight import make_flight, write_flight
 
@@ -41,7 +41,7 @@ def poses_of(folder: Path) -> list[Pose]:
 
 def test_frames_are_read_when_they_are_wanted(folder: Path) -> None:
     poses = poses_of(folder)
-    recording = Recording.of_files(folder / "map.tif", folder / "frames", poses, 120.0)
+    recording = Recording.of_files(folder / "map.tif", frame_files(poses, folder / "frames"), 120.0)
     assert recording.camera == Camera.of_focal(120, 160, 90)
     assert recording.read(poses[1]).shape == (90, 160, 3)
     assert recording.scoring(poses[:1]).poses == (poses[0],)
@@ -49,24 +49,31 @@ def test_frames_are_read_when_they_are_wanted(folder: Path) -> None:
 
 def test_a_camera_of_larger_frames_is_scaled(folder: Path) -> None:
     camera = Camera.of_focal(240, 320, 180, tilt_deg=10)
-    recording = Recording.of_files(folder / "map.tif", folder / "frames", poses_of(folder), camera)
+    files = frame_files(poses_of(folder), folder / "frames")
+    recording = Recording.of_files(folder / "map.tif", files, camera)
     assert recording.camera == Camera.of_focal(120, 160, 90, tilt_deg=10)
     with pytest.raises(InputError, match="another shape"):
-        Recording.of_files(
-            folder / "map.tif", folder / "frames", poses_of(folder), Camera.of_focal(240, 320, 320)
-        )
+        Recording.of_files(folder / "map.tif", files, Camera.of_focal(240, 320, 320))
+
+
+def test_a_frame_of_another_shape_is_named_at_once(folder: Path, tmp_path: Path) -> None:
+    one, two = poses_of(folder)
+    Image.new("RGB", (90, 90)).save(tmp_path / "square.jpg")
+    files = {one: folder / "frames" / one.frame, two: tmp_path / "square.jpg"}
+    with pytest.raises(InputError, match=r"square\.jpg: another shape than the camera's: 90x90, not 160x90"):
+        Recording.of_files(folder / "map.tif", files, 120.0)
 
 
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_missing_files_are_refused(folder: Path, tmp_path: Path) -> None:
     poses = poses_of(folder)
     with pytest.raises(InputError, match="cannot read the map"):
-        Recording.of_files(tmp_path / "map.tif", folder / "frames", poses, 120.0)
-    with pytest.raises(InputError, match="a frame of the poses is missing"):
-        Recording.of_files(folder / "map.tif", tmp_path, poses, 120.0)
+        Recording.of_files(tmp_path / "map.tif", frame_files(poses, folder / "frames"), 120.0)
+    with pytest.raises(InputError, match="cannot read the picture"):
+        Recording.of_files(folder / "map.tif", {poses[0]: tmp_path / "none.jpg"}, 120.0)
     Image.fromarray(np.zeros((9, 9, 3), np.uint8)).save(tmp_path / "plain.tif")
     with pytest.raises(InputError, match="no georeference"):
-        Recording.of_files(tmp_path / "plain.tif", folder / "frames", poses, 120.0)
+        Recording.of_files(tmp_path / "plain.tif", frame_files(poses, folder / "frames"), 120.0)
 
 
 def test_the_embedded_flight_is_the_same_each_time() -> None:

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import ExtraMissingError, InputError
-from wnn2hdl.navigate.track import Fix, TrackPoint, follow, frame_times
+from wnn2hdl.navigate.track import Fix, TrackPoint, follow
 
 AREA = 1500.0**2
 
@@ -145,10 +145,12 @@ def test_a_fix_of_less_spread_pulls_harder() -> None:
     assert end(3.0) > end(30.0) > 0
 
 
-def test_frame_numbers_serve_as_times() -> None:
-    assert frame_times(["DJI_001.jpg", "DJI_004.jpg", "DJI_006.jpg"]) == [1, 4, 6]
-    assert frame_times(["b2.png", "a1.png"]) is None
-    assert frame_times(["first.png", "IMG_2.png"]) is None
+def test_a_track_that_has_settled_on_a_wrong_place_is_left() -> None:
+    wrong = [[Fix(-400.0 + 40 * i, 300.0, 12.0, 0.7)] for i in range(4)]
+    right = [[Fix(40.0 * i, -300.0, 12.0, 0.7)] for i in range(4, 9)]
+    ends = [point.north_m for point in follow([*wrong, *right], area_m2=AREA) if point]
+    assert ends[3] == pytest.approx(300, abs=10)
+    assert ends[-1] == pytest.approx(-300, abs=10)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """Weightless edges: directions, what is learned from frames of known place, and finding places with it."""
 
-import json
 from collections.abc import Callable
 
 import cv2
@@ -8,8 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import InputError, ModelFileError
-from wnn2hdl.ir import EdgeFilter, window_codes
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import window_codes
 from wnn2hdl.navigate.channels import ChannelIndex
 from wnn2hdl.navigate.geometry import Patch
 from wnn2hdl.navigate.weightless import GSD_M, Sighting, WeightlessEdges, by_rule, learn
@@ -184,21 +183,3 @@ def test_a_frame_at_the_edge_of_the_map_teaches_what_is_common() -> None:
     shifted = Sighting(seen.patches, seen.row - 4, seen.column - 5)
     learned = learn(cut_off, np.ones(cut_off.shape[:2], dtype=np.bool_), [shifted])
     assert learned.east.evaluate(window(".## .## .##"))
-
-
-def test_weightless_edges_survive_json(trained: tuple[NDArray[np.uint8], WeightlessEdges]) -> None:
-    learned = trained[1]
-    again = WeightlessEdges.from_json(json.loads(json.dumps(learned.to_json())))
-    assert (again.gsd_m, again.side) == (learned.gsd_m, learned.side)
-    assert (again.east.patterns == learned.east.patterns).all()
-
-
-@pytest.mark.parametrize(
-    "change", [{"side": 4}, {"side": 3.0}, {"side": True}, {"gsd_m": 0}, {"gsd_m": "far"}, {"east": [1]}]
-)
-def test_another_json_is_refused(change: dict[str, object]) -> None:
-    good = WeightlessEdges(2.0, 15, EdgeFilter("x", np.ones(512, dtype=np.bool_))).to_json()
-    with pytest.raises(ModelFileError):
-        WeightlessEdges.from_json({**good, **change})
-    with pytest.raises(ModelFileError):
-        WeightlessEdges.from_json({key: good[key] for key in good if key not in change})

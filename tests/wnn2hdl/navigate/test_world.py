@@ -116,6 +116,13 @@ def test_bad_maps_are_refused(tmp_path: Path) -> None:
         WorldMap.read(deep)
 
 
+def test_indices_of_a_colour_table_are_refused(tmp_path: Path) -> None:
+    place = {"crs": "EPSG:32651", "transform": METRES, "photometric": "palette"}
+    path = written(tmp_path / "map.tif", dots()[..., :1], **place)
+    with pytest.raises(InputError, match=r"indices of a colour table: .*gdal_translate -expand rgb"):
+        WorldMap.read(path)
+
+
 def test_a_damaged_map_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path / "map.tif", dots(), crs="EPSG:32651", transform=METRES)
     path.write_bytes(path.read_bytes()[:100_000])
