@@ -88,9 +88,12 @@ def run_flight(
         InputError: a frame cannot be read, or the calibration fails; a position that is needed is not known;
             no frame shows anything of the map.
     """
-    require_located(calibrating, "calibration takes positions that are known")
+    add = "add its latitude and longitude, or"
+    require_located(calibrating, "calibration takes known positions", f"{add} calibrate on other frames")
     if any(half is not None for half in searches.values()):
-        require_located(recording.poses, "a window lies around a position that is known")
+        require_located(
+            recording.poses, "a window lies around a known position", known + "search the map alone"
+        )
     progress("map", 0, 1)
     grid = recording.world.resampled()
     progress("map", 1, 1)
@@ -121,7 +124,7 @@ def run_flight(
         }
         return navigator.locate(recording.read(pose), pose, cameras_at(pose), windows, tolerance)
 
-    known = list(_in_parallel(locate, calibrating, jobs, "thresholds", progress))
+    proving = list(_in_parallel(locate, calibrating, jobs, "thresholds", progress))
     found = list(_in_parallel(locate, recording.poses, jobs, "frames", progress))
     if not any(one[place] for one in found for place in one):
         raise InputError(
@@ -134,7 +137,7 @@ def run_flight(
         rows, tracks = [], []
         for method in methods:
             place = kind, method.key
-            acceptance = accepted(grid, calibrating, [one[place] for one in known])
+            acceptance = accepted(grid, calibrating, [one[place] for one in proving])
             located = [one[place] for one in found]
             rows.append(MethodResult(method.title, fixes(grid, recording.poses, located, acceptance)))
             track = tracked(grid, recording.poses, located, acceptance, half)

@@ -117,11 +117,11 @@ def frame_numbers(names: Sequence[str]) -> list[int] | None:
     return [number for _, number in parts] if told else None
 
 
-def require_located(poses: Sequence[Pose], why: str) -> None:
-    """Raise InputError, which says why, unless it is known where all frames were taken."""
+def require_located(poses: Sequence[Pose], why: str, mend: str) -> None:
+    """Raise InputError, which says why and what to do, unless it is known where all frames were taken."""
     for pose in poses:
         if not pose.located:
-            raise InputError(f"{why}, and a frame has none", value=pose.frame)
+            raise InputError(f"{why}, and a frame has none", value=pose.frame, mend=mend)
 
 
 def frame_files(poses: Sequence[Pose], folder: Path) -> dict[Pose, Path]:

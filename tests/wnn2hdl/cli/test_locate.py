@@ -80,7 +80,7 @@ def test_frames_to_calibrate_on_may_lie_elsewhere(run: Run, folder: Path, tmp_pa
     assert data["calibration"]["frames"] == names[:3]
     assert data["methods"]["perspective-weightless"]["mean_m"] is None
     refusal = run("locate", *flight, *calibrating, "-o", tmp_path / "out").complaint()
-    assert "a window lies around a position that is known, and a frame has none: frame_1.jpg" in refusal
+    assert "a window lies around a known position, and a frame has none: frame_1.jpg" in refusal
 
 
 @pytest.mark.slow

@@ -92,6 +92,6 @@ def test_where_a_frame_was_taken_need_not_be_known(tmp_path: Path) -> None:
     assert (known.located, unknown.located) == (True, False)
     (without,) = read(tmp_path, "frame,height_above_ground_m,yaw_deg,pitch_deg,roll_deg", "b.jpg,90,0,0,0")
     assert not without.located
-    require_located([known], "calibration needs it")
-    with pytest.raises(InputError, match=r"calibration needs it, and a frame has none: b\.jpg"):
-        require_located([known, unknown], "calibration needs it")
+    require_located([known], "calibration needs it", "add it")
+    with pytest.raises(InputError, match=r"calibration needs it, and a frame has none: b\.jpg; add it"):
+        require_located([known, unknown], "calibration needs it", "add it")
