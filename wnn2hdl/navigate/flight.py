@@ -92,7 +92,7 @@ def run_flight(
     require_located(calibrating, "calibration takes known positions", f"{add} calibrate on other frames")
     if any(half is not None for half in searches.values()):
         require_located(
-            recording.poses, "a window lies around a known position", known + "search the map alone"
+            recording.poses, "a window lies around a known position", f"{add} search the map alone"
         )
     progress("map", 0, 1)
     grid = recording.world.resampled()
