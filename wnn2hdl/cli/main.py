@@ -58,6 +58,12 @@ def main() -> int:
         # The reader of our output went away, as `| head` does; closing stops Python's own complaint at exit.
         sys.stderr.close()
         return 0
+    except OSError as error:
+        place = "" if error.filename is None else f": {error.filename}"
+        return _complain(f"the system refused: {error.strerror or error}{place}", 2)
+    except UnicodeEncodeError as error:
+        letter = ascii(error.object[error.start : error.end])
+        return _complain(f"cannot print {letter} in {error.encoding}; set PYTHONIOENCODING=utf-8", 2)
     return status if isinstance(status, int) else 0
 
 

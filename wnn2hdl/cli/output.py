@@ -20,7 +20,7 @@ json_option = click.option(
 
 def emit(data: dict[str, Any], text: str, *, as_json: bool) -> None:
     """Print a result: the JSON object, or the text made for people."""
-    click.echo(json.dumps(data, indent=1) if as_json else text)
+    click.echo(json.dumps(data, indent=1, allow_nan=False) if as_json else text)
 
 
 @contextmanager

@@ -124,7 +124,7 @@ def report_command(
     pages: dict[Format, Callable[[], str]] = {
         "html": lambda: index_page(entries, pair, checks),
         "markdown": lambda: gate_markdown(reports, checks, known),
-        "json": lambda: json.dumps(data, indent=1) + "\n",
+        "json": lambda: json.dumps(data, indent=1, allow_nan=False) + "\n",
         "junit": lambda: gate_junit(checks),
     }
     written = [folder / REPORT_HTML for folder in folders]

@@ -2,6 +2,7 @@
 
 import fcntl
 import json
+import math
 import os
 import tempfile
 from pathlib import Path
@@ -14,19 +15,33 @@ def write_text(path: Path, text: str) -> None:
     """Write a file under a temporary name, then rename it, so that nothing half-written is ever seen.
 
     Raises:
-        InputError: the folder does not exist or cannot be written.
+        InputError: the folder does not exist or cannot be written, it has no room, or a folder has the
+            file's name; or the text is none: what came from a name that is no UTF-8 cannot be written.
     """
-    write_bytes(path, text.encode())
+    try:
+        content = text.encode()
+    except UnicodeEncodeError as error:
+        wrong = ascii(error.object[error.start : error.end])
+        raise InputError(
+            "cannot write this as UTF-8", value=f"{wrong} in {path}", mend="rename what has it in its name"
+        ) from error
+    write_bytes(path, content)
 
 
 def write_bytes(path: Path, content: bytes) -> None:
     """As `write_text`, for bytes."""
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        _write(path, content)
     except OSError as error:
         raise InputError(
-            "cannot write", value=f"{path} ({error.strerror})", mend="choose a folder you may write to"
+            "cannot write",
+            value=f"{path} ({error.strerror})",
+            mend="choose a folder you may write to, with room in it",
         ) from error
+
+
+def _write(path: Path, content: bytes) -> None:
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as stream:
@@ -90,10 +105,14 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
         what: what it should hold, for the error: "a model".
 
     Raises:
-        ModelFileError: the file is missing, no text, no JSON, or no object.
+        ModelFileError: the file is missing, no text, no JSON, or no object; or it holds what no JSON file
+            can be written with: a number that is none or infinite, half a surrogate pair.
     """
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        data = json.loads(text, parse_constant=_finite, parse_float=_finite)
+        if "\\ud" in text.lower():
+            json.dumps(data, ensure_ascii=False).encode()
     except OSError as error:
         raise ModelFileError(f"cannot read {what}", value=f"{path} ({error.strerror})") from error
     except (ValueError, RecursionError) as error:
@@ -109,7 +128,15 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
 
 def write_json(path: Path, data: dict[str, Any]) -> None:
     """Write a JSON object, indented, in the order given; the same data give the same bytes."""
-    write_text(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    write_text(path, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def _finite(text: str) -> float:
+    # Python reads NaN and Infinity, which JSON does not know, and takes 1e999 for infinity.
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"{text} is no finite number")
+    return number
 
 
 def _umask() -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.shell_completion import BashComplete
 
-from wnn2hdl.cli import main  # noqa: F401  # importing it registers all commands
+from wnn2hdl.cli import main
 from wnn2hdl.cli.main import app
 
 COMMAND = [sys.executable, "-c", "import sys; from wnn2hdl.cli import main; sys.exit(main())"]
@@ -45,6 +45,31 @@ def test_bad_usage_has_status_2() -> None:
     assert "No such option" in complaint("train", "--colour", "blue")
     assert "neither 'auto' nor a whole number" in complaint("train", "--bleach", "0", "-o", "m.json")
     assert "'4' is not one of" in complaint("train", "--neighbourhood", "4", "-o", "m.json")
+
+
+@pytest.mark.parametrize(
+    ("error", "line"),
+    [
+        (
+            PermissionError(13, "Permission denied", "a/b"),
+            "wnn2hdl: the system refused: Permission denied: a/b",
+        ),
+        (OSError("out of something"), "wnn2hdl: the system refused: out of something"),
+        (
+            UnicodeEncodeError("ascii", "a\u2713", 1, 2, "no"),
+            "wnn2hdl: cannot print '\\u2713' in ascii; set PYTHONIOENCODING=utf-8",
+        ),
+    ],
+)
+def test_what_the_system_refuses_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: Exception, line: str
+) -> None:
+    def refused(**_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(sys.modules["wnn2hdl.cli.main"], "app", refused)
+    assert main() == 2
+    assert capsys.readouterr() == ("", f"{line}\n")
 
 
 @pytest.mark.slow

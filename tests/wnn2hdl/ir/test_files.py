@@ -1,4 +1,5 @@
 import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,38 @@ def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
         files.write_text(tmp_path / "no" / "x.txt", "")
 
 
+def test_a_file_where_a_folder_is_gets_one_line(tmp_path: Path) -> None:
+    (tmp_path / "x.txt").mkdir()
+    with pytest.raises(InputError, match=r"cannot write: .*x\.txt \(Is a directory\); choose"):
+        files.write_text(tmp_path / "x.txt", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.txt"]
+
+
+def test_a_disk_without_room_gets_one_line_and_keeps_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "x.txt"
+    files.write_text(path, "old")
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limit[1]))
+    try:
+        with pytest.raises(InputError, match=r"cannot write: .*x\.txt \(File too large\)"):
+            files.write_bytes(path, bytes(2000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_text_that_is_no_unicode_gets_one_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot write this as UTF-8: '\\udcff' in .*x\.json; rename"):
+        files.write_json(tmp_path / "x.json", {"name": "a\udcff"})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_numbers_that_json_does_not_know_are_not_written(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        files.write_json(tmp_path / "x.json", {"a": float("nan")})
+
+
 def test_make_folder_makes_parents_and_minds_files(tmp_path: Path) -> None:
     files.make_folder(tmp_path / "a" / "b")
     files.make_folder(tmp_path / "a" / "b")
@@ -61,6 +94,10 @@ def test_make_folder_makes_parents_and_minds_files(tmp_path: Path) -> None:
         (b"\xff\xfe\x00", "not a model, or a damaged one"),
         (b"[" * 100_000, "not a model, or a damaged one"),
         (b"[1, 2]", r"not a model: .* \(holds a JSON list\)"),
+        (b'{"a": NaN}', r"a damaged one: .* \(NaN is no finite number\)"),
+        (b'{"a": [-Infinity]}', r"a damaged one: .* \(-Infinity is no finite number\)"),
+        (b'{"a": 1e999}', r"a damaged one: .* \(1e999 is no finite number\)"),
+        (b'{"a": "\\ud800"}', r"a damaged one: .*surrogates not allowed"),
     ],
 )
 def test_what_is_no_json_object_gets_one_line(tmp_path: Path, content: bytes | None, line: str) -> None:
@@ -71,6 +108,12 @@ def test_what_is_no_json_object_gets_one_line(tmp_path: Path, content: bytes | N
         files.read_json(path, "a model")
     assert "\n" not in str(caught.value)
     assert str(path) in str(caught.value)
+
+
+def test_a_whole_surrogate_pair_is_a_letter(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_text('{"a": "\\ud83c\\udf33", "b": -1.5e3}')
+    assert files.read_json(path, "a model") == {"a": "\U0001f333", "b": -1500.0}
 
 
 def test_a_number_too_long_for_python_gets_one_line(tmp_path: Path) -> None:
