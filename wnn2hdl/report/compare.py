@@ -115,7 +115,7 @@ def _number(what: str, before: float | None, after: float | None, *, kind: str, 
     if before is None or after is None or before == after:
         return Change(what, *texts, "" if before == after else "measured in one build only")
     difference = after - before
-    points = f"{100 * difference:+.{2 if abs(difference) >= 1e-4 else 8}f}".rstrip("0")
+    points = f"{100 * difference:+.{2 if abs(difference) >= 1e-4 else 8}f}".rstrip("0").rstrip(".")
     told = f"{points} points" if kind == "percent" else f"{difference:+,}{' ps' * (kind == 'ps')}"
     judgement = "" if not good else "better" if difference * good > 0 else "worse"
     return Change(what, *texts, told.replace("-", "\N{MINUS SIGN}"), judgement)

@@ -4,6 +4,7 @@ import copy
 from typing import Any
 
 import numpy as np
+import pytest
 
 from wnn2hdl.ir import Lut, LutNetwork
 from wnn2hdl.report.compare import Change, compare, compare_tables
@@ -57,6 +58,16 @@ def test_delays_change_by_picoseconds(report: dict[str, Any]) -> None:
 def test_a_small_change_is_not_told_as_none(report: dict[str, Any]) -> None:
     other = report | {"accuracy": report["accuracy"] + 1e-6}
     assert figures(report, other)["accuracy of the circuit"].change == "+0.0001 points"
+
+
+@pytest.mark.parametrize(
+    ("after", "told"), [(0.91, "+1 points"), (1.0, "+10 points"), (0.915, "+1.5 points")]
+)
+def test_whole_points_have_no_decimal_point(report: dict[str, Any], after: float, told: str) -> None:
+    assert (
+        figures(report | {"accuracy": 0.9}, report | {"accuracy": after})["accuracy of the circuit"].change
+        == told
+    )
 
 
 def lut(inputs: str, init: int) -> LutNetwork:
