@@ -117,7 +117,8 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
     entries = open_entries([reference.folder, smallest.folder], folder / PAGE)
     exhibits = _exhibits(outcome, scanned, flight)
     lead = f"From generated landscapes: {REFERENCE} (reference), and {SMALLEST} (smallest)."
-    write_text(folder / PAGE, index_page(entries, (entries[0], entries[1]), exhibits=exhibits, lead=lead))
+    pair = (entries[0], entries[1])
+    write_text(folder / PAGE, index_page(entries, pair, (), exhibits, lead, maker="wnn2hdl demo"))
     return Demo(folder / PAGE, outcome, reference, smallest, playback.windows, scanned, flight, missing)
 
 

@@ -23,6 +23,7 @@ from wnn2hdl.report import (
     gate_junit,
     gate_markdown,
     index_page,
+    is_index,
     read_baseline,
     run_gate,
     write_baseline,
@@ -86,8 +87,8 @@ def report_command(
     the BUILDs is passed over, so that build/* will do.
 
     The gate works where a limit, a baseline or a format for it is given. It ends with status 1 if a build
-    is not proved or breaks a limit; and with a baseline if a part takes more LUTs, the accuracy is lower,
-    or a build or part is known to one side only.
+    is not proved, was changed after the proof or breaks a limit; and with a baseline if a part takes more
+    LUTs, the accuracy is lower, or a build or part is known to one side only.
 
     \b
     Examples:
@@ -110,16 +111,18 @@ def report_command(
     folders = _folders(builds)
     if form == "html" and output is None and record is None and len(folders) > 1:
         output = folders[0].parent / INDEX
+        _require_own(output)
     entries = open_entries(folders, output or INDEX)
     pair = _pair(folders, entries, compare)
     reports = {entry.name: entry.report for entry in entries}
+    changes = {entry.name: entry.changes for entry in entries}
     if record is not None:
         make_folder(record.parent)
-        write_baseline(record, reports)
+        write_baseline(record, reports, changes)
     known = read_baseline(baseline) if baseline is not None else None
     checks: tuple[Check, ...] = ()
     if limited or form != "html":
-        checks = run_gate(reports, Limits(max_luts, min_accuracy, max_regress or 0), known)
+        checks = run_gate(reports, changes, Limits(max_luts, min_accuracy, max_regress or 0), known)
     data = gate_json(reports, checks)
     pages: dict[Format, Callable[[], str]] = {
         "html": lambda: index_page(entries, pair, checks),
@@ -150,6 +153,16 @@ def _folders(paths: Sequence[Path]) -> list[Path]:
     if others:
         click.echo(f"wnn2hdl: passed over, since it is no build: {others}", err=True)
     return folders
+
+
+def _require_own(index: Path) -> None:
+    """Keep a page that another command or a person put where an index would go."""
+    if index.is_file() and not is_index(index.read_text(encoding="utf-8", errors="replace")):
+        raise InputError(
+            "there is a page that `wnn2hdl report` did not make",
+            value=index,
+            mend="name another file, or this one, with -o",
+        )
 
 
 def _pair(

@@ -1,7 +1,7 @@
 """The manifest of an output folder: what was written, with hashes, so that a later change is noticed."""
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -44,13 +44,18 @@ def write_manifest(
     write_json(folder / MANIFEST_NAME, manifest(contents, versions=versions, options=options))
 
 
-def check(folder: Path) -> list[str]:
+def check(folder: Path, *, besides: Container[str] = ()) -> list[str]:
     """Differences between a folder and its manifest, one line each; none if all is as it was written.
 
     Files that the manifest does not name are no difference.
 
+    Args:
+        folder: the folder.
+        besides: files that may differ.
+
     Raises:
         ModelFileError: the manifest is missing or damaged.
+        InputError: a file cannot be read.
     """
     data = read_json(folder / MANIFEST_NAME, "a manifest")
     files = data.get("files")
@@ -58,6 +63,8 @@ def check(folder: Path) -> list[str]:
         raise ModelFileError("not a manifest", value=folder / MANIFEST_NAME, mend="compile the model again")
     differences = []
     for name, digest in files.items():
+        if name in besides:
+            continue
         if not (folder / name).is_file():
             differences.append(f"{name} is missing")
         elif hashlib.sha256(_read(folder / name)).hexdigest() != digest:

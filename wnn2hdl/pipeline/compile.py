@@ -196,7 +196,7 @@ def _report(
             )
             for part, cover in planned.covers.items()
         },
-        proof=Proof(checked.status, checked.method, checked.proof_seconds),
+        proof=Proof(checked.status, checked.method, checked.proof_seconds, checked.failure),
         care=Care(int(specification.care.sum()), measured.coverage, len(specification.care)),
         edges=_edges(planned, options),
         accuracy=measured.accuracy,

@@ -34,10 +34,7 @@ def staged(target: Path) -> Iterator[Path]:
     Raises:
         InputError: ``target`` is something other than a build or an empty folder, or cannot be written.
     """
-    if target.exists() and not (target.is_dir() and (is_build(target) or not any(target.iterdir()))):
-        raise InputError(
-            "the output exists and is no earlier build", value=target, mend="choose another folder"
-        )
+    require_replaceable(target)
     make_folder(target.parent)
     try:
         staging = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
@@ -57,9 +54,29 @@ def staged(target: Path) -> Iterator[Path]:
         shutil.rmtree(staging, ignore_errors=True)
 
 
+def require_replaceable(target: Path) -> None:
+    """Raise InputError if something other than a build or an empty folder is where a build is to go."""
+    if target.exists() and not (target.is_dir() and (is_build(target) or not any(target.iterdir()))):
+        raise InputError(
+            "the output exists and is no earlier build", value=target, mend="choose another folder"
+        )
+
+
 def is_build(folder: Path) -> bool:
     """Whether a folder was written by `compile`: its manifest tells it from any other."""
     return (folder / MANIFEST_NAME).is_file()
+
+
+def failure(folder: Path) -> str | None:
+    """Why a build is marked as failed, on one line; None if it is not."""
+    path = folder / FAILED
+    if not path.exists():
+        return None
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        text = f"{FAILED} cannot be read ({error.strerror})"
+    return " ".join(text.split()) or f"{FAILED} gives no reason"
 
 
 def require_build(folder: Path) -> None:

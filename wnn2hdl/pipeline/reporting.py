@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.dataset import Dataset
+from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import Palette, png_bytes, read_rgb
 from wnn2hdl.ir import WisardModel, window_codes
@@ -20,7 +21,7 @@ from wnn2hdl.ir.files import read_json, write_text
 from wnn2hdl.pipeline.classifiers import circuit_classifier
 from wnn2hdl.pipeline.design import MODEL_FILE, Design
 from wnn2hdl.pipeline.evaluation import with_halo
-from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, REPORT_HTML, SAMPLE_FILE, require_build
+from wnn2hdl.pipeline.folder import REPORT_FILE, REPORT_HTML, SAMPLE_FILE, failure, require_build
 from wnn2hdl.pipeline.planning import CompileOptions
 from wnn2hdl.report import Entry, ModelFigures, Picture, build_page, check_report, percent
 from wnn2hdl.samples import landscape
@@ -84,8 +85,9 @@ def read_report(folder: Path) -> dict[str, Any]:
     path = folder / REPORT_FILE
     report = read_json(path, "a report")
     check_report(report, path)
-    if (folder / FAILED).exists():
-        report["proof"]["status"] = "failed"
+    reason = failure(folder)
+    if reason is not None:
+        report["proof"] |= {"status": "failed", "failure": reason}
     return report
 
 
@@ -97,27 +99,34 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
         index: the file of the index, which links to their pages.
 
     Raises:
-        InputError: one is no build, or is given twice.
-        ModelFileError: a file of one is missing or damaged.
+        InputError: one is no build, is given twice, or lies in a folder whose name is no UTF-8.
+        ModelFileError: a file of one is missing or damaged, the manifest among them.
     """
-    names = Counter(_name(folder) for folder in folders)
+    places = [folder.resolve() for folder in folders]
+    for folder, place in zip(folders, places, strict=True):
+        if places.count(place) > 1:
+            raise InputError("a build is given twice", value=folder, mend="name it once")
+        _require_utf8(place)
+    names = Counter(place.name for place in places)
     entries = []
-    for folder in folders:
+    for folder, place in zip(folders, places, strict=True):
         require_build(folder)
         report = read_report(folder)
+        # The page is made of the other files, and one of another version of wnn2hdl is no change of these.
+        changes = tuple(check_manifest(folder, besides={REPORT_HTML}))
         if not (folder / REPORT_HTML).is_file():
             write_page(folder)
-        name = _name(folder) if names[_name(folder)] == 1 else str(folder)
-        link = os.path.relpath((folder / REPORT_HTML).resolve(), index.resolve().parent)
-        entries.append(Entry(name, quote(Path(link).as_posix()), report, Design.load(folder).networks))
-    twice = [name for name, count in Counter(entry.name for entry in entries).items() if count > 1]
-    if twice:
-        raise InputError("a build is given twice", value=twice[0], mend="name it once")
+        name = place.name if names[place.name] == 1 else str(folder)
+        link = os.path.relpath(place / REPORT_HTML, index.resolve().parent)
+        networks = Design.load(folder).networks
+        entries.append(Entry(name, quote(Path(link).as_posix()), report, networks, changes))
     return tuple(entries)
 
 
-def _name(folder: Path) -> str:
-    return folder.resolve().name
+def _require_utf8(folder: Path) -> None:
+    shown = os.fsencode(folder).decode(errors="backslashreplace")
+    if shown != str(folder):
+        raise InputError("the name of a folder is no UTF-8", value=shown, mend="rename it")
 
 
 def model_figures(model: WisardModel) -> ModelFigures:

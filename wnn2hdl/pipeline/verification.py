@@ -9,8 +9,9 @@ from wnn2hdl.ir.files import read_json
 from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import Circuits, circuits_of
 from wnn2hdl.pipeline.design import Design
-from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, require_build
+from wnn2hdl.pipeline.folder import REPORT_FILE, failure, require_build
 from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.report import check_report
 
 
 def open_build(folder: Path) -> tuple[Design, Circuits, dict[str, Any]]:
@@ -22,7 +23,10 @@ def open_build(folder: Path) -> tuple[Design, Circuits, dict[str, Any]]:
     """
     require_build(folder)
     design = Design.load(folder)
-    return design, circuits_of(design, folder), read_json(folder / REPORT_FILE, "a report")
+    path = folder / REPORT_FILE
+    report = read_json(path, "a report")
+    check_report(report, path)
+    return design, circuits_of(design, folder), report
 
 
 def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked | None]:
@@ -49,9 +53,10 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         design, circuits, report = open_build(folder)
     except ModelFileError as error:
         return [*problems, error.line()], None
-    if (folder / FAILED).exists():
-        problems.append("the build is marked as failed")
-    if report.get("hashes", {}).get("model") != design.model.digest():
+    reason = failure(folder)
+    if reason is not None:
+        problems.append(f"the build is marked as failed: {reason}")
+    if report["hashes"].get("model") != design.model.digest():
         problems.append(f"{REPORT_FILE} belongs to a build of another model")
     try:
         checked = check(design, circuits, progress)
@@ -63,7 +68,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
     if checked.failure is not None:
         problems.append(checked.failure)
     for part, result in checked.syntheses.items():
-        told = report.get("parts", {}).get(part, {}).get("luts")
+        told = report["parts"].get(part, {}).get("luts")
         if told != result.resources.luts:
             problems.append(
                 f"{REPORT_FILE} says that {part} takes {told} LUTs; it takes {result.resources.luts}"

@@ -1,6 +1,6 @@
 """The baseline of the gate: what builds cost and how often they were right, in a file beside the code."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -43,21 +43,31 @@ def recorded(report: Mapping[str, Any]) -> Recorded:
     return Recorded(report["accuracy"], luts, report["mode"], report["target"])
 
 
-def write_baseline(path: Path, reports: Mapping[str, Mapping[str, Any]]) -> None:
+def write_baseline(
+    path: Path, reports: Mapping[str, Mapping[str, Any]], changes: Mapping[str, Sequence[str]]
+) -> None:
     """Record builds; the file is sorted, a line a figure, so that a change shows in a diff.
 
     Args:
         path: the file.
         reports: the objects of `report.json` by the name of the build.
+        changes: for each build which of its files were changed after it was made.
 
     Raises:
-        CheckError: a build is not proved: what may be wrong is nothing to measure others by.
+        CheckError: a build is not proved, or not as it was when it was: what may be wrong is nothing to
+            measure others by.
         InputError: the file cannot be written.
     """
     for name, report in reports.items():
         if report["proof"]["status"] != "proved":
             raise CheckError(
                 "a build that is not proved makes no baseline", value=name, mend="compile it again"
+            )
+        if changes[name]:
+            raise CheckError(
+                "a build that was changed makes no baseline",
+                value=f"{name} ({', '.join(changes[name])})",
+                mend="compile it again",
             )
     builds = {name: asdict(recorded(report)) for name, report in sorted(reports.items())}
     write_json(path, {"format": FORMAT, "version": VERSION, "builds": builds})

@@ -74,11 +74,13 @@ class Proof:
         status: ``proved``, ``simulated``, ``failed`` or ``not run``.
         method: in words; None if it was not run.
         seconds: wall clock; None if it was not run.
+        failure: an input on which circuit and model differ, in words; None if none was found.
     """
 
     status: str = "not run"
     method: str | None = None
     seconds: float | None = None
+    failure: str | None = None
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The gate: whether builds are as good as they were, and as good as they must be."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,15 +42,20 @@ class Check:
 
 
 def run_gate(
-    reports: Mapping[str, Mapping[str, Any]], limits: Limits, baseline: Mapping[str, Recorded] | None
+    reports: Mapping[str, Mapping[str, Any]],
+    changes: Mapping[str, Sequence[str]],
+    limits: Limits,
+    baseline: Mapping[str, Recorded] | None,
 ) -> tuple[Check, ...]:
     """Look at all builds.
 
-    With a baseline, a build or part that only one side knows fails: a build that nobody recorded would be
-    guarded by nothing, and one that went away would stop being guarded without a word.
+    A build whose files were changed fails: what was proved and counted is no longer there. With a
+    baseline, a build or part that only one side knows fails: a build that nobody recorded would be guarded by
+    nothing, and one that went away would stop being guarded without a word.
 
     Args:
         reports: the objects of `report.json` by the name of the build.
+        changes: for each build which of its files were changed after it was made, one line each.
         limits: what is asked of every build.
         baseline: what was recorded; None if nothing was.
 
@@ -59,7 +64,7 @@ def run_gate(
     """
     checks: list[Check] = []
     for name, report in reports.items():
-        checks += _of_build(name, report, limits)
+        checks += _of_build(name, report, changes[name], limits)
         if baseline is not None:
             checks += _against(name, recorded(report), baseline.get(name), limits.max_regress)
     for name in sorted(set(baseline or {}) - set(reports)):
@@ -67,11 +72,14 @@ def run_gate(
     return tuple(checks)
 
 
-def _of_build(name: str, report: Mapping[str, Any], limits: Limits) -> Iterator[Check]:
-    status = report["proof"]["status"]
+def _of_build(
+    name: str, report: Mapping[str, Any], changes: Sequence[str], limits: Limits
+) -> Iterator[Check]:
+    status, failure = report["proof"]["status"], report["proof"].get("failure")
     proved = status == "proved"
     text = "proved equal to the model" if proved else f"{status}, not proved equal to the model"
-    yield Check(name, "proof", proved, text)
+    yield Check(name, "proof", proved, f"{text}: {failure}" if failure else text)
+    yield Check(name, "files", not changes, ", ".join(changes) or "as they were written")
     target = report["target"]
     if limits.max_luts is not None:
         luts = report["parts"][target]["luts"]

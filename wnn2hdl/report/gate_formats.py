@@ -48,7 +48,7 @@ def gate_markdown(
     """A short page: a table of the builds, then every reason to fail and everything that got better."""
     failed = [check for check in checks if not check.passed]
     title = f"✗ failed, {len(failed)} of" if failed else "✓ passed,"
-    title += f" {len(checks)} check{'s' if len(checks) != 1 else ''}"
+    title += f" {len(checks)} checks"
     heads = ["build", "result", "LUTs", "accuracy", "proof"]
     rules = ["---", "---", "---:", "---:", "---"]
     if baseline is not None:

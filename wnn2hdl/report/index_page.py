@@ -27,6 +27,10 @@ _HEADS = (
 """Columns, and whether they hold numbers."""
 
 
+REPORT = "wnn2hdl report"
+"""Who makes an index, unless told otherwise; it stands in the page's head as its generator."""
+
+
 @dataclass(frozen=True, eq=False)
 class Entry:
     """A build for the index.
@@ -36,12 +40,14 @@ class Entry:
         link: address of its page, relative to the index.
         report: the object of its `report.json`.
         networks: its LUT networks by part.
+        changes: which of its files were changed after it was made, one line each.
     """
 
     name: str
     link: str
     report: Mapping[str, Any]
     networks: Mapping[str, LutNetwork]
+    changes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,7 @@ def index_page(
     checks: Sequence[Check] = (),
     exhibits: Sequence[Exhibit] = (),
     lead: str = "Figures as measured; a build's name leads to its report.",
+    maker: str = REPORT,
 ) -> str:
     """The page of several builds; the same arguments give the same bytes.
 
@@ -76,6 +83,7 @@ def index_page(
         checks: what the gate found.
         exhibits: shown below the builds.
         lead: what these builds are, in words.
+        maker: the command that makes the page.
     """
     points = [
         (entry.name, luts, accuracy)
@@ -92,9 +100,7 @@ def index_page(
         environment()
         .get_template("index.html")
         .render(
-            entries=[
-                {"name": entry.name, "link": entry.link, "cells": _cells(entry.report)} for entry in entries
-            ],
+            entries=[{"name": entry.name, "link": entry.link, "cells": _cells(entry)} for entry in entries],
             heads=_HEADS,
             chart=scatter(points) if len(points) > 1 else "",
             pair=[entry.name for entry in pair] if pair else (),
@@ -102,13 +108,19 @@ def index_page(
             checks=checks,
             exhibits=exhibits,
             lead=lead,
+            maker=maker,
             failed=[check for check in checks if not check.passed],
         )
     )
 
 
-def _cells(report: Mapping[str, Any]) -> list[tuple[str | Markup, bool]]:
-    target = report["target"]
+def is_index(page: str) -> bool:
+    """Whether a page is an index that `report` made, as against one of another command or of a person."""
+    return f'<meta name="generator" content="{REPORT}">' in page
+
+
+def _cells(entry: Entry) -> list[tuple[str | Markup, bool]]:
+    report, target = entry.report, entry.report["target"]
     parts, care, proof = report["parts"], report["care"], report["proof"]["status"]
     figures = [
         (f"parts.{target}.luts", parts[target]["luts"], "count"),
@@ -118,10 +130,10 @@ def _cells(report: Mapping[str, Any]) -> list[tuple[str | Markup, bool]]:
         ("care.codes", care["codes"], "count"),
         ("care.coverage", care["coverage"], "percent"),
     ]
-    mark = "✓" if proof == "proved" else "✗"
+    mark = "✓" if proof == "proved" and not entry.changes else "✗"
     return [
         (target, False),
         (report["mode"], False),
         *((data_element(key, value, kind), True) for key, value, kind in figures),
-        (f"{mark} {proof}", False),
+        (", ".join([f"{mark} {proof}", *entry.changes]), False),
     ]

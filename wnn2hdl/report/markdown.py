@@ -63,7 +63,8 @@ def report_markdown(report: Mapping[str, Any]) -> str:
 def _proof(proof: Mapping[str, Any]) -> str:
     method = f" by {proof['method']}" if proof["method"] else ""
     seconds = f" in {proof['seconds']:.2f} s" if proof["seconds"] is not None else ""
-    return f"{proof['status']}{method}{seconds}"
+    failure = f": {proof['failure']}" if proof["failure"] else ""
+    return f"{proof['status']}{method}{seconds}{failure}"
 
 
 def _answers(report: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -72,11 +72,11 @@ def test_a_baseline_holds_until_a_build_gets_worse(
     gate = ("--baseline", "ci/baseline.json")
     status, out, err = report(*builds, *gate)
     assert (status, err) == (0, "")
-    assert "14 of 14 checks passed" in out
+    assert "16 of 16 checks passed" in out
     worse = write_build(tmp_path / "new" / "a", accuracy=0.89)
     status, _, err = report(worse, builds[1], *gate)
     assert status == 1
-    assert err == "wnn2hdl: 1 of 14 checks failed: a, accuracy: 0.89, in the baseline 0.9\n"
+    assert err == "wnn2hdl: 1 of 16 checks failed: a, accuracy: 0.89, in the baseline 0.9\n"
     status, _, err = report(builds[0], *gate)
     assert status == 1
     assert "b, build: in the baseline, but not among the builds" in err
@@ -88,6 +88,33 @@ def test_recording_leaves_an_index_alone(report: Run, builds: tuple[Path, Path])
     assert Path("build/index.html").read_text() == "of the demo"
     report(*builds, "--write-baseline", "baseline.json", "-o", "pages.html")
     assert Path("pages.html").is_file()
+
+
+def test_an_index_of_another_command_stays(report: Run, builds: tuple[Path, Path]) -> None:
+    index = Path("build/index.html")
+    index.write_text("of the demo")
+    assert (
+        "there is a page that `wnn2hdl report` did not make: build/index.html" in report(*builds).complaint()
+    )
+    assert index.read_text() == "of the demo"
+    assert not Path("build/a/report.html").exists()
+    assert report(*builds, "-o", index)[0] == 0
+    assert report(*builds)[0] == 0
+
+
+@pytest.mark.parametrize("name", ["model.json", "report.json"])
+def test_a_build_that_was_changed_after_its_proof_fails(
+    report: Run, builds: tuple[Path, Path], name: str
+) -> None:
+    assert report(builds[0], "--max-luts", 10**6)[0] == 0
+    with (builds[0] / name).open("a") as changed:
+        changed.write("\n")
+    status, out, err = report(builds[0], "--max-luts", 10**6)
+    assert (status, err) == (1, f"wnn2hdl: 1 of 3 checks failed: a, files: {name} was changed\n")
+    assert f"✗ a, files: {name} was changed" in out
+    status, _, err = report(builds[0], "--write-baseline", "b.json")
+    assert (status, Path("b.json").exists()) == (1, False)
+    assert f"a build that was changed makes no baseline: a ({name} was changed)" in err
 
 
 def test_luts_may_rise_as_far_as_allowed(
@@ -164,7 +191,7 @@ def test_json_is_one_object_on_stdout_in_every_case(report: Run, builds: tuple[P
         (("build/a", "--json", "--format", "junit"), "two outputs on stdout"),
         (("build/a", "--write-baseline", "b.json", "--max-luts", "1"), "--write-baseline takes builds as"),
         (("build/a", "--compare", "build/a", "build/b"), "not among the BUILDs: build/b"),
-        (("build/a", "build/a"), "a build is given twice: "),
+        (("build/a", "build/../build/a"), "a build is given twice: "),
     ],
 )
 def test_bad_usage_gets_one_line(

@@ -36,6 +36,12 @@ def test_changed_and_missing_files_are_named(folder: Path) -> None:
     assert check(folder) == ["block.v was changed", "report.json is missing"]
 
 
+def test_files_that_may_differ_are_passed_over(folder: Path) -> None:
+    (folder / "block.v").write_text("module clock; endmodule\n")
+    (folder / "report.json").unlink()
+    assert check(folder, besides={"report.json"}) == ["block.v was changed"]
+
+
 def test_without_a_manifest_nothing_can_be_checked(folder: Path) -> None:
     (folder / MANIFEST_NAME).write_text("[]")
     with pytest.raises(ModelFileError, match="not a manifest"):

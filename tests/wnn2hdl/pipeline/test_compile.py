@@ -86,7 +86,8 @@ def test_a_wrong_circuit_does_not_leave_unnoticed(
     assert built.failure is not None
     assert "differs from the model" in built.failure
     assert (tmp_path / "pixel" / "FAILED").read_text() == built.failure + "\n"
-    assert json.loads((tmp_path / "pixel" / "report.json").read_text())["proof"]["status"] == "failed"
+    report = json.loads((tmp_path / "pixel" / "report.json").read_text())
+    assert (report["proof"]["status"], report["proof"]["failure"]) == ("failed", built.failure)
 
 
 def test_a_failing_compile_leaves_no_folder(model: WisardModel, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError
-from wnn2hdl.pipeline.folder import staged
+from wnn2hdl.pipeline.folder import failure, staged
 
 
 def test_the_folder_appears_when_all_is_written(tmp_path: Path) -> None:
@@ -54,3 +54,14 @@ def test_what_is_no_build_is_not_touched(tmp_path: Path) -> None:
 def test_a_place_that_cannot_be_written_gets_one_line() -> None:
     with pytest.raises(InputError, match="cannot"), staged(Path("/proc/build")):
         pass
+
+
+def test_the_reason_of_a_failure_is_one_line(tmp_path: Path) -> None:
+    assert failure(tmp_path) is None
+    (tmp_path / "FAILED").write_bytes(b"the pixel differs\nfor \xff\n")
+    assert failure(tmp_path) == "the pixel differs for \N{REPLACEMENT CHARACTER}"
+    (tmp_path / "FAILED").write_text("\n")
+    assert failure(tmp_path) == "FAILED gives no reason"
+    (tmp_path / "FAILED").unlink()
+    (tmp_path / "FAILED").mkdir()
+    assert failure(tmp_path) == "FAILED cannot be read (Is a directory)"

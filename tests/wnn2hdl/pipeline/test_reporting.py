@@ -2,6 +2,7 @@
 
 import json
 import shlex
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -99,8 +100,35 @@ def test_folders_of_one_name_are_told_apart_by_their_paths(
 ) -> None:
     folders = [write_build(tmp_path / x / "a") for x in ("old", "new")]
     assert [entry.name for entry in open_entries(folders, tmp_path / "i.html")] == list(map(str, folders))
-    with pytest.raises(InputError, match="given twice"):
-        open_entries([folders[0], folders[0]], tmp_path / "i.html")
+
+
+@pytest.mark.parametrize("spelling", ["a", "b/../a", "link"])
+def test_a_build_is_given_once_however_its_path_is_spelled(
+    write_build: Callable[..., Path], tmp_path: Path, spelling: str
+) -> None:
+    folder = write_build(tmp_path / "a")
+    (tmp_path / "b").mkdir()
+    (tmp_path / "link").symlink_to(folder)
+    with pytest.raises(InputError, match=r"a build is given twice: .*; name it once"):
+        open_entries([folder, tmp_path / spelling], tmp_path / "i.html")
+
+
+def test_a_name_that_is_no_utf8_is_refused(write_build: Callable[..., Path], tmp_path: Path) -> None:
+    folder = write_build(tmp_path / "b\udcff", name="b")
+    with pytest.raises(InputError, match=r"the name of a folder is no UTF-8: .*/b\\xff; rename it"):
+        open_entries([folder], tmp_path / "i.html")
+
+
+def test_changes_after_the_proof_are_noted_but_not_those_of_the_page(build: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(build, tmp_path / "x"))
+    (folder / "report.html").unlink()
+    (entry,) = open_entries([folder], tmp_path / "i.html")
+    assert entry.changes == ()
+    (folder / "report.html").write_text("of another version")
+    with (folder / "block.v").open("a") as verilog:
+        verilog.write("module foo; endmodule")
+    (entry,) = open_entries([folder], tmp_path / "i.html")
+    assert entry.changes == ("block.v was changed",)
 
 
 def test_a_page_that_is_there_is_kept(write_build: Callable[..., Path], tmp_path: Path) -> None:
@@ -116,7 +144,10 @@ def test_a_marked_build_is_not_proved_whatever_its_report_says(
     folder = write_build(tmp_path / "a")
     assert read_report(folder)["proof"]["status"] == "proved"
     (folder / "FAILED").write_text("a counterexample\n")
-    assert read_report(folder)["proof"]["status"] == "failed"
+    assert (
+        read_report(folder)["proof"] | {"status": "failed", "failure": "a counterexample"}
+        == (read_report(folder)["proof"])
+    )
     assert "This build failed" in write_page(folder).read_text()
 
 
@@ -125,5 +156,9 @@ def test_damaged_builds_get_one_line(write_build: Callable[..., Path], tmp_path:
     (folder / "report.json").write_text("{}")
     with pytest.raises(ModelFileError, match="not a report"):
         open_entries([folder], tmp_path / "index.html")
+    other = write_build(tmp_path / "b")
+    (other / "manifest.json").write_text("{]")
+    with pytest.raises(ModelFileError, match="not a manifest, or a damaged one"):
+        open_entries([other], tmp_path / "index.html")
     with pytest.raises(InputError, match="not a build folder"):
         open_entries([tmp_path], tmp_path / "index.html")

@@ -88,6 +88,11 @@ def test_the_report_of_another_build_is_noticed(copy: Path) -> None:
     assert any(problem.startswith("report.json says that pixel takes") for problem in problems)
 
 
+def test_the_reason_of_a_failure_is_told(copy: Path) -> None:
+    (copy / "FAILED").write_text("the pixel differs\n")
+    assert "the build is marked as failed: the pixel differs" in verify_build(copy, silent)[0]
+
+
 def test_another_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="not a build folder"):
         verify_build(tmp_path, silent)

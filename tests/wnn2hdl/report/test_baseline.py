@@ -19,15 +19,15 @@ def test_what_is_recorded(report: dict[str, Any]) -> None:
 
 
 def test_it_survives_its_file(report: dict[str, Any], tmp_path: Path) -> None:
-    write_baseline(tmp_path / "b.json", {"x": report})
+    write_baseline(tmp_path / "b.json", {"x": report}, {"x": ()})
     assert read_baseline(tmp_path / "b.json") == {"x": recorded(report)}
 
 
 def test_a_change_of_a_figure_is_a_change_of_a_line(report: dict[str, Any], tmp_path: Path) -> None:
     changed = copy.deepcopy(report)
     changed["parts"]["block"]["luts"] = 20
-    write_baseline(tmp_path / "a.json", {"x": report, "a": report})
-    write_baseline(tmp_path / "b.json", {"a": changed, "x": report})
+    write_baseline(tmp_path / "a.json", {"x": report, "a": report}, {"x": (), "a": ()})
+    write_baseline(tmp_path / "b.json", {"a": changed, "x": report}, {"x": (), "a": ()})
     lines = [(tmp_path / name).read_text().splitlines() for name in ("a.json", "b.json")]
     assert [pair for pair in zip(*lines, strict=True) if pair[0] != pair[1]] == [
         ('    "block": 19,', '    "block": 20,')
@@ -37,7 +37,7 @@ def test_a_change_of_a_figure_is_a_change_of_a_line(report: dict[str, Any], tmp_
 def test_a_build_that_is_not_proved_makes_none(report: dict[str, Any], tmp_path: Path) -> None:
     report["proof"]["status"] = "failed"
     with pytest.raises(CheckError, match="not proved makes no baseline: x"):
-        write_baseline(tmp_path / "b.json", {"x": report})
+        write_baseline(tmp_path / "b.json", {"x": report}, {"x": ()})
     assert not list(tmp_path.iterdir())
 
 
@@ -56,7 +56,7 @@ def test_a_build_that_is_not_proved_makes_none(report: dict[str, Any], tmp_path:
 )
 def test_a_damaged_one_is_refused_in_one_line(report: dict[str, Any], tmp_path: Path, damage: Any) -> None:
     path = tmp_path / "b.json"
-    write_baseline(path, {"x": report})
+    write_baseline(path, {"x": report}, {"x": ()})
     path.write_text(json.dumps(damage(json.loads(path.read_text()))))
     with pytest.raises(ModelFileError, match="not a baseline, or one of another version") as caught:
         read_baseline(path)

@@ -5,10 +5,21 @@ from typing import Any
 
 import pytest
 
+from wnn2hdl.report import gate
 from wnn2hdl.report.baseline import Recorded, recorded
-from wnn2hdl.report.gate import Check, Limits, run_gate
+from wnn2hdl.report.gate import Check, Limits
 
 NONE = Limits()
+
+
+def run_gate(
+    reports: dict[str, dict[str, Any]],
+    limits: Limits,
+    baseline: dict[str, Recorded] | None,
+    changes: tuple[str, ...] = (),
+) -> tuple[Check, ...]:
+    """The gate over builds whose files all have the same changes."""
+    return gate.run_gate(reports, dict.fromkeys(reports, changes), limits, baseline)
 
 
 def failed(checks: tuple[Check, ...]) -> list[tuple[str, str]]:
@@ -20,6 +31,7 @@ def test_a_build_as_it_was_passes(report: dict[str, Any]) -> None:
     assert failed(checks) == []
     assert [check.name for check in checks] == [
         "proof",
+        "files",
         "max-luts",
         "min-accuracy",
         "build",
@@ -37,6 +49,20 @@ def test_what_is_not_proved_fails(report: dict[str, Any], status: str) -> None:
     report["proof"]["status"] = status
     assert failed(run_gate({"x": report}, NONE, None)) == [
         ("proof", f"{status}, not proved equal to the model")
+    ]
+
+
+def test_the_reason_of_a_failure_is_told(report: dict[str, Any]) -> None:
+    report["proof"] |= {"status": "failed", "failure": "the Verilog of the pixel differs"}
+    assert failed(run_gate({"x": report}, NONE, None)) == [
+        ("proof", "failed, not proved equal to the model: the Verilog of the pixel differs")
+    ]
+
+
+def test_a_build_that_was_changed_after_its_proof_fails(report: dict[str, Any]) -> None:
+    changes = ("block.v was changed", "model.json is missing")
+    assert failed(run_gate({"x": report}, NONE, None, changes)) == [
+        ("files", "block.v was changed, model.json is missing")
     ]
 
 

@@ -19,7 +19,7 @@ Reports = dict[str, dict[str, Any]]
 @pytest.fixture
 def checks(report: dict[str, Any]) -> tuple[Check, ...]:
     """A build that passes all but the limit of its LUTs."""
-    return run_gate({"amazon": report}, Limits(max_luts=18), {"amazon": recorded(report)})
+    return run_gate({"amazon": report}, {"amazon": ()}, Limits(max_luts=18), {"amazon": recorded(report)})
 
 
 def test_json_has_its_stable_keys(report: dict[str, Any], checks: tuple[Check, ...]) -> None:
@@ -36,7 +36,7 @@ def test_json_has_its_stable_keys(report: dict[str, Any], checks: tuple[Check, .
             "proof": "proved",
         }
     ]
-    assert data["checks"][1] == {
+    assert data["checks"][2] == {
         "build": "amazon",
         "name": "max-luts",
         "passed": False,
@@ -47,7 +47,7 @@ def test_json_has_its_stable_keys(report: dict[str, Any], checks: tuple[Check, .
 def test_markdown_is_a_short_table_and_the_reasons(report: dict[str, Any], checks: tuple[Check, ...]) -> None:
     text = gate_markdown({"amazon": report}, checks, {"amazon": recorded(report)})
     assert text == (
-        "### wnn2hdl: ✗ failed, 1 of 8 checks\n"
+        "### wnn2hdl: ✗ failed, 1 of 9 checks\n"
         "\n"
         "| build | result | LUTs | baseline | accuracy | baseline | proof |\n"
         "| --- | --- | ---: | ---: | ---: | ---: | --- |\n"
@@ -60,15 +60,17 @@ def test_markdown_is_a_short_table_and_the_reasons(report: dict[str, Any], check
 
 
 def test_markdown_without_a_baseline_has_no_columns_for_it(report: dict[str, Any]) -> None:
-    text = gate_markdown({"amazon": report}, run_gate({"amazon": report}, Limits(), None), None)
-    assert text.startswith("### wnn2hdl: ✓ passed, 1 check\n\n| build | result | LUTs | accuracy | proof |\n")
+    text = gate_markdown(
+        {"amazon": report}, run_gate({"amazon": report}, {"amazon": ()}, Limits(), None), None
+    )
+    assert text.startswith("### wnn2hdl: ✓ passed, 2 checks\n\n| build | result | LUTs | accuracy | proof |\n")
     assert "| amazon | ✓ passed | 19 | 91.65 % | proved |" in text
 
 
 def test_markdown_tells_what_got_better(report: dict[str, Any]) -> None:
     before = recorded(report)
     report["parts"]["block"]["luts"] = 18
-    checks = run_gate({"x": report}, Limits(), {"x": before})
+    checks = run_gate({"x": report}, {"x": ()}, Limits(), {"x": before})
     text = gate_markdown({"x": report}, checks, {"x": before})
     assert "✓ passed" in text
     assert "`--write-baseline` records it:\n\n- **x**, luts of block: 18, in the baseline 19\n" in text
@@ -83,7 +85,7 @@ def test_no_name_breaks_the_table(name: str) -> None:
         "proof": {"status": "proved"},
         "parts": {"pixel": {"luts": 1}},
     }
-    text = gate_markdown({name: report}, run_gate({name: report}, Limits(), None), None)
+    text = gate_markdown({name: report}, run_gate({name: report}, {name: ()}, Limits(), None), None)
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == 3
     assert all(len(re.findall(r"(?<!\\)\|", row)) == 6 for row in rows)
@@ -125,7 +127,7 @@ def test_junit_is_what_gitlab_and_github_read(checks: tuple[Check, ...]) -> None
 def test_no_two_cases_of_junit_have_one_name(report: dict[str, Any]) -> None:
     # Of equal names GitLab shows the first only.
     known = {"a": recorded(report), "b": recorded(report), "gone": recorded(report)}
-    checks = run_gate({"a": report, "b": report}, Limits(20, 0.5), known)
+    checks = run_gate({"a": report, "b": report}, {"a": (), "b": ()}, Limits(20, 0.5), known)
     names = [case.attrib["name"] for case in ET.fromstring(gate_junit(checks)).iter("testcase")]
     assert len(set(names)) == len(names) == len(checks)
 

@@ -1,13 +1,14 @@
 """Several builds on a page."""
 
 import copy
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from wnn2hdl.ir import LutNetwork
 from wnn2hdl.report.gate import Limits, run_gate
-from wnn2hdl.report.index_page import Entry, Exhibit, index_page
+from wnn2hdl.report.index_page import Entry, Exhibit, index_page, is_index
 
 
 @pytest.fixture
@@ -37,11 +38,24 @@ def test_two_builds_are_compared_if_asked_for(entries: tuple[Entry, Entry]) -> N
 
 def test_the_gate_is_told(entries: tuple[Entry, Entry]) -> None:
     reports = {entry.name: entry.report for entry in entries}
+    changes = {entry.name: entry.changes for entry in entries}
     assert "Gate:" not in index_page(entries)
-    assert "All 2 checks passed." in index_page(entries, checks=run_gate(reports, Limits(), None))
-    page = index_page(entries, checks=run_gate(reports, Limits(max_luts=10), None))
+    assert "All 4 checks passed." in index_page(entries, checks=run_gate(reports, changes, Limits(), None))
+    page = index_page(entries, checks=run_gate(reports, changes, Limits(max_luts=10), None))
     assert "✗ failed" in page
     assert "the block takes 19 LUTs, allowed are 10" in page
+
+
+def test_a_build_that_was_changed_after_its_proof_is_marked(entries: tuple[Entry, Entry]) -> None:
+    assert "<td>✓ proved</td>" in index_page(entries[:1])
+    page = index_page([replace(entries[0], changes=("block.v was changed",))])
+    assert "<td>✗ proved, block.v was changed</td>" in page
+
+
+def test_an_index_of_report_is_told_from_that_of_another_command(entries: tuple[Entry, Entry]) -> None:
+    assert is_index(index_page(entries))
+    assert not is_index(index_page(entries, maker="wnn2hdl demo"))
+    assert not is_index("<p>wnn2hdl report</p>")
 
 
 def test_accuracies_are_charted_where_two_builds_have_one(entries: tuple[Entry, Entry]) -> None:

@@ -157,8 +157,21 @@ def test_limits_are_stated(report: dict[str, Any], networks: dict[str, LutNetwor
     assert "Domain mode." in page
     assert "Domain mode." not in build_page(report | {"mode": "exact"}, networks)
     assert "This build failed" not in page
-    report["proof"]["status"] = "failed"
-    assert "This build failed" in build_page(report, networks)
+
+
+def test_a_failed_build_gives_the_reason_and_claims_nothing(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    page = build_page(report, networks)
+    assert "Equal to the model on" in page
+    assert '<strong class="good">proved</strong> equal to the model by SAT' in page
+    report["proof"] |= {"status": "failed", "failure": "the pixel differs for (1,2,3)"}
+    page = build_page(report, networks)
+    assert "This build failed" in page
+    assert "the pixel differs for (1,2,3)" in page
+    assert '<strong class="bad">not proved</strong> equal to the model: failed' in page
+    assert "Equal to the model on" not in page
+    assert "Domain mode." not in page
 
 
 def test_texts_of_others_are_escaped(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
