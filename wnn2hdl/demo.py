@@ -1,6 +1,6 @@
 """Everything on the embedded default: landscapes, sweep, circuits, proof, a map, a flight and a page."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -100,11 +100,12 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
         training, high_bits(), address_bits=4, rams=16, bleaching=None, seed=seed, progress=progress
     )
     model = with_colours(model, training, progress)
-    options = CompileOptions(mode="domain", care=folder / "training" / IMAGES)
-    reference = compile_model(model, folder / "reference", options, progress, test)
+    options = CompileOptions(test_images=folder / "test" / IMAGES, test_masks=folder / "test" / MASKS)
+    domain = replace(options, mode="domain", care=folder / "training" / IMAGES)
+    reference = compile_model(model, folder / "reference", domain, progress)
     small = train_under_budget(training, MAX_LUTS, trials=0, seed=seed, progress=progress)
     small = with_colours(small, training, progress)
-    smallest = compile_model(small, folder / "smallest", CompileOptions(), progress, test)
+    smallest = compile_model(small, folder / "smallest", options, progress)
     picture = folder / "test" / IMAGES / f"{test.names[0]}"
     playback = play(smallest.folder, picture, "amaranth", progress)
     scanned = flight = None

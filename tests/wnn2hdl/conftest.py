@@ -1,5 +1,6 @@
 """A small model and builds of it, shared by tests of the pipeline and of its commands."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from wnn2hdl.encode import parse_bits
 from wnn2hdl.images import write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.compile import compile_model
+from wnn2hdl.pipeline.landscapes import IMAGES, MASKS, write_landscapes
 from wnn2hdl.pipeline.planning import CompileOptions
 from wnn2hdl.pipeline.training import train
 from wnn2hdl.samples import landscape
@@ -42,11 +44,21 @@ def imagery(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def build(model: WisardModel, imagery: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tested(tmp_path_factory: pytest.TempPathFactory) -> CompileOptions:
+    """Options that name two labelled landscapes to test on."""
+    folder = tmp_path_factory.mktemp("test imagery")
+    write_landscapes(folder, 2, 64, seed=5, progress=silent)
+    return CompileOptions(test_images=folder / IMAGES, test_masks=folder / MASKS)
+
+
+@pytest.fixture(scope="session")
+def build(
+    model: WisardModel, imagery: Path, tested: CompileOptions, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """A block in domain mode, compiled once."""
     folder = tmp_path_factory.mktemp("builds") / "block"
-    options = CompileOptions(mode="domain", care=imagery)
-    assert compile_model(model, folder, options, silent, from_samples(2, 64, seed=5)).failure is None
+    options = replace(tested, mode="domain", care=imagery)
+    assert compile_model(model, folder, options, silent).failure is None
     return folder
 
 

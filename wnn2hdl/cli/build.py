@@ -8,9 +8,7 @@ import click
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, palette_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
-from wnn2hdl.dataset import from_masks
-from wnn2hdl.errors import CheckError, InputError
-from wnn2hdl.images import Palette
+from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.compile import compile_model, require_luts
 from wnn2hdl.pipeline.design import Mode, Style, Target
@@ -82,9 +80,6 @@ def compile_command(
     model: Path,
     output: Path,
     max_luts: int | None,
-    test_images: Path | None,
-    test_masks: Path | None,
-    palette: Path | None,
     as_json: bool,
     **choices: Any,
 ) -> None:
@@ -97,17 +92,8 @@ def compile_command(
       wnn2hdl compile model.json --edges learned --edge-images IMAGES --edge-luts 2 -o build/mine
     """
     options = CompileOptions(care_minimum=choices.pop("care_min"), **choices)
-    if (test_images is None) != (test_masks is None):
-        raise InputError(
-            "these options go together", value="--test-images and --test-masks", mend="give both"
-        )
-    if palette and not test_masks:
-        raise InputError("a palette belongs to masks", value=palette, mend="give --test-masks too")
-    test_set = None
-    if test_images and test_masks:
-        test_set = from_masks(test_images, test_masks, Palette.read(palette) if palette else None)
     with progress() as report:
-        build = compile_model(WisardModel.load(model), output, options, report, test_set)
+        build = compile_model(WisardModel.load(model), output, options, report)
     emit(build.report, parts_table(build.report, build.folder), as_json=as_json)
     if build.failure is not None:
         raise CheckError("the circuit is not the model", value=build.failure, mend=f"see {build.folder}")

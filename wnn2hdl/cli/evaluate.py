@@ -26,11 +26,10 @@ from wnn2hdl.cli.options import (
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.dataset import Dataset, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.files import read_json
 from wnn2hdl.pipeline.classifiers import PictureClassifier, open_classifier
 from wnn2hdl.pipeline.design import MODEL_FILE
 from wnn2hdl.pipeline.evaluation import Evaluation, SquareVote, evaluate, majority_labels
-from wnn2hdl.pipeline.folder import REPORT_FILE
+from wnn2hdl.pipeline.folder import require_build
 from wnn2hdl.pipeline.measures import (
     CONFIDENCE,
     METHOD,
@@ -41,8 +40,10 @@ from wnn2hdl.pipeline.measures import (
     kappa,
     mean_iou,
 )
+from wnn2hdl.pipeline.reporting import read_report
 from wnn2hdl.pipeline.tagged import RULE, evaluate_tagged
 from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.report import UNCLASSIFIED
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
 from wnn2hdl.squares import MAX_SIDE
 
@@ -93,7 +94,7 @@ def evaluate_command(
     parts = _parts(model)
     head: dict[str, Any] = {"classifier": str(model)}
     if model.is_dir():
-        head["mode"] = read_json(model / REPORT_FILE, "a report")["mode"]
+        head["mode"] = read_report(model)["mode"]
     with progress() as report:
         if chips is None and tags is None:
             first = next(iter(parts.values()))
@@ -116,6 +117,14 @@ def evaluate_command(
 def _parts(model: Path) -> dict[str, PictureClassifier]:
     """What is to be measured, the most important first: of a build its circuit, then its model."""
     if model.is_dir():
+        require_build(model)
+        target = read_report(model)["target"]
+        if target in UNCLASSIFIED:
+            raise InputError(
+                "the build holds no classifier, so there is nothing to measure",
+                value=f"{model} (target {target})",
+                mend="give its model.json, or a build of another target",
+            )
         return {"circuit": open_classifier(model), "model": open_classifier(model / MODEL_FILE)}
     return {"model": open_classifier(model)}
 

@@ -8,10 +8,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from wnn2hdl.dataset import Dataset
+from wnn2hdl.dataset import Dataset, from_masks
 from wnn2hdl.emit import write_manifest
-from wnn2hdl.errors import CheckError
-from wnn2hdl.images import write_png
+from wnn2hdl.errors import CheckError, InputError
+from wnn2hdl.images import Palette, write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.files import write_json, write_text
 from wnn2hdl.pipeline.checking import Checked, check
@@ -21,9 +21,10 @@ from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.evaluation import evaluate, require_same_classes
 from wnn2hdl.pipeline.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
 from wnn2hdl.pipeline.planning import CompileOptions, Plan, plan
-from wnn2hdl.pipeline.reporting import command, model_figures, sample_picture, write_page
+from wnn2hdl.pipeline.reporting import command, evaluation, model_figures, sample_picture, write_page
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.report import (
+    UNCLASSIFIED,
     BuildReport,
     Care,
     EdgeFigures,
@@ -72,7 +73,6 @@ def compile_model(
     folder: Path,
     options: CompileOptions,
     progress: Progress,
-    test_set: Dataset | None = None,
 ) -> Build:
     """Compile a model into a folder.
 
@@ -83,13 +83,13 @@ def compile_model(
         folder: the build folder; an earlier build there is replaced.
         options: the user's choices.
         progress: told of every stage.
-        test_set: labelled images for the accuracies in the report.
 
     Raises:
-        InputError: the model or the imagery cannot be used, the test set has other classes, or the folder
+        InputError: the model or the imagery cannot be used, the test masks have other classes, or the folder
             cannot be written.
         ToolError: an outside program is missing or failed.
     """
+    test_set = _test_set(options)
     if test_set is not None:
         require_same_classes(model.classes, test_set)
     clock = _Clock()
@@ -130,6 +130,22 @@ def require_luts(build: Build, max_luts: int) -> None:
         )
 
 
+def _test_set(options: CompileOptions) -> Dataset | None:
+    """The labelled pictures that the options name; raises InputError for half of what it takes."""
+    if options.test_images is None or options.test_masks is None:
+        if options.test_images or options.test_masks:
+            raise InputError(
+                "these options go together", value="--test-images and --test-masks", mend="give both"
+            )
+        if options.palette:
+            raise InputError(
+                "a palette belongs to masks", value=options.palette, mend="give --test-masks too"
+            )
+        return None
+    palette = Palette.read(options.palette) if options.palette else None
+    return from_masks(options.test_images, options.test_masks, palette)
+
+
 def _header(design: Design, options: CompileOptions) -> list[str]:
     specification = design.specification
     care = specification.care
@@ -146,7 +162,7 @@ def _header(design: Design, options: CompileOptions) -> list[str]:
 
 @dataclass(frozen=True)
 class _Measured:
-    """What labelled images show; None where there were none."""
+    """What labelled images show; None where there were none, or no classifier to show them."""
 
     accuracy: float | None = None
     model_accuracy: float | None = None
@@ -155,7 +171,7 @@ class _Measured:
 
 
 def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _Measured:
-    if test_set is None:
+    if test_set is None or design.target in UNCLASSIFIED:
         return _Measured()
     circuit = evaluate(circuit_classifier(design), test_set, progress)
     model = evaluate(model_classifier(design.model), test_set, progress)
@@ -176,7 +192,7 @@ def _report(
     clock: _Clock,
 ) -> BuildReport:
     design = planned.design
-    specification = design.specification
+    edges = _edges(planned, options)
     figures = {part: PartFigures(**asdict(result.resources)) for part, result in checked.syntheses.items()}
     yosys = find_yosys()
     return BuildReport(
@@ -195,25 +211,25 @@ def _report(
                 literals_after=cover.cover.literals,
             )
             for part, cover in planned.covers.items()
+            if part in design.used
         },
         proof=Proof(checked.status, checked.method, checked.proof_seconds, checked.failure),
-        care=Care(int(specification.care.sum()), measured.coverage, len(specification.care)),
-        edges=_edges(planned, options),
+        care=_care(design, measured.coverage),
+        edges=edges,
         accuracy=measured.accuracy,
         model_accuracy=measured.model_accuracy,
         confusion=measured.confusion,
         model=model_figures(design.model),
         command=command(name, options),
+        evaluation=evaluation(name, options) if measured.accuracy is not None else None,
         options={
             **{
                 key: str(value) if isinstance(value, Path) else value
                 for key, value in asdict(options).items()
             },
             "target": design.target,
-            "edge_patterns": specification.edge_filter.size
-            if isinstance(specification, Specification)
-            else None,
-            "mapping": dict(planned.methods),
+            "edge_patterns": edges.patterns,
+            "mapping": {name: method for name, method in planned.methods.items() if name in design.used},
             "simulated_vectors": checked.vectors,
         },
         hashes={"model": design.model.digest()},
@@ -222,9 +238,16 @@ def _report(
     )
 
 
+def _care(design: Design, coverage: float | None) -> Care:
+    if design.target in UNCLASSIFIED:
+        return Care()
+    care = design.specification.care
+    return Care(int(care.sum()), coverage, len(care))
+
+
 def _edges(planned: Plan, options: CompileOptions) -> EdgeFigures:
     specification, agreement = planned.design.specification, planned.agreement
-    if not isinstance(specification, Specification):
+    if not isinstance(specification, Specification) or "edge" not in planned.design.used:
         return EdgeFigures()
     edge_filter = specification.edge_filter
     figures = EdgeFigures(edge_filter.name, edge_filter.size)

@@ -55,6 +55,13 @@ class Design:
         """The network from the encoder's bits to the class, outputs ``class_bit0`` …."""
         return self.networks[COMBINER if self.target == "neighbourhood" else "pixel"]
 
+    @property
+    def used(self) -> Mapping[str, LutNetwork]:
+        """The networks that the target is made of: a pixel classifier alone has no edge filter in it."""
+        if self.target in ("block", "neighbourhood"):
+            return self.networks
+        return {name: network for name, network in self.networks.items() if name == self.target}
+
     def save(self, folder: Path) -> None:
         """Write `MODEL_FILE` and `DESIGN_FILE` into a folder."""
         self.model.save(folder / MODEL_FILE)

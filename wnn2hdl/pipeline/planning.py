@@ -31,6 +31,9 @@ class CompileOptions:
         edge_luts: learn only patterns that fit so many LUTs, 1 to 3; None sets no limit.
         style: equations or explicit LUT cells.
         effort: 0 to 3, how long to look for a smaller circuit.
+        test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
+        test_masks: folder of their masks.
+        palette: file of the classes and their colours in the masks.
         sobel_threshold: the baseline's, 1 to 2040.
     """
 
@@ -44,6 +47,9 @@ class CompileOptions:
     edge_luts: int | None = None
     style: Style = "luts"
     effort: int = 1
+    test_images: Path | None = None
+    test_masks: Path | None = None
+    palette: Path | None = None
     sobel_threshold: int = 128
 
     @property

@@ -23,7 +23,7 @@ from wnn2hdl.pipeline.design import MODEL_FILE, Design
 from wnn2hdl.pipeline.evaluation import with_halo
 from wnn2hdl.pipeline.folder import REPORT_FILE, REPORT_HTML, SAMPLE_FILE, failure, require_build
 from wnn2hdl.pipeline.planning import CompileOptions
-from wnn2hdl.report import Entry, ModelFigures, Picture, build_page, check_report, percent
+from wnn2hdl.report import UNCLASSIFIED, Entry, ModelFigures, Picture, build_page, check_report, percent
 from wnn2hdl.samples import landscape
 
 SAMPLE_SIDE = 256
@@ -59,7 +59,7 @@ def page(design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8]) -
     """
     palette = Palette.of(design.model.classes)
     colours = palette.to_json()
-    pictures = _pictures(design, report, sample, palette)
+    pictures = _pictures(design, sample, palette)
     return build_page(report, design.networks, pictures, tuple(colours.items()) if pictures else ())
 
 
@@ -157,6 +157,16 @@ def command(name: str, options: CompileOptions) -> str:
     return shlex.join(words)
 
 
+def evaluation(name: str, options: CompileOptions) -> str:
+    """The command that measures a build on its test pictures again; arguments as of `command`."""
+    places = {"--images": options.test_images, "--masks": options.test_masks, "--palette": options.palette}
+    words = ["wnn2hdl", "evaluate", name]
+    for flag, place in places.items():
+        if place is not None:
+            words += [flag, str(place.resolve())]
+    return shlex.join(words)
+
+
 def _word(option: str, value: Any) -> str:
     # Paths are whole, since the command is run from another folder than the one they were given in.
     if isinstance(value, Path) or (option == "edges" and value not in _EDGE_SETS):
@@ -164,11 +174,10 @@ def _word(option: str, value: Any) -> str:
     return str(value)
 
 
-def _pictures(
-    design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8], palette: Palette
-) -> tuple[Picture, ...]:
-    if report["target"] == "match":
+def _pictures(design: Design, sample: NDArray[np.uint8], palette: Palette) -> tuple[Picture, ...]:
+    if design.target == "match":
         return ()
+    given = ", as the edge filter is given it" if design.target in UNCLASSIFIED else ""
     classifier = circuit_classifier(design)
     labels = classifier.classify(with_halo(sample, classifier.halo))
     # Outside of its care set a circuit of several outputs may name a class that does not exist.
@@ -176,12 +185,12 @@ def _pictures(
     found = [
         _picture("Input", "A picture, as it goes in", sample),
         _picture(
-            "Class of each pixel",
+            f"Class of each pixel{given}",
             _shares(labels, palette.names),
             palette.paint(labels),
         ),
     ]
-    if report["parts"]["edge"]["luts"] is not None and min(labels.shape) >= 3:
+    if "edge" in design.used and min(labels.shape) >= 3:
         edges = design.networks["edge"].evaluate(window_codes(labels != 0))[..., 0]
         # With a white rim, since pixels there have no whole window, so that all pictures lie alike.
         drawn = np.pad(np.where(edges, np.uint8(0), np.uint8(255)), 1, constant_values=255)

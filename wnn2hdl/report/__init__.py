@@ -4,6 +4,7 @@ from wnn2hdl.report.baseline import Recorded, read_baseline, write_baseline
 from wnn2hdl.report.build_report import (
     PUBLISHED,
     REPORT_VERSION,
+    UNCLASSIFIED,
     BuildReport,
     Care,
     EdgeFigures,
@@ -25,6 +26,7 @@ from wnn2hdl.report.schemas import check_report
 __all__ = [
     "PUBLISHED",
     "REPORT_VERSION",
+    "UNCLASSIFIED",
     "BuildReport",
     "Care",
     "Check",

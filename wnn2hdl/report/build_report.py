@@ -7,6 +7,9 @@ from typing import Any
 REPORT_VERSION = 1
 """Of the form of `report.json`; it rises when a key changes its meaning or goes away."""
 
+UNCLASSIFIED = frozenset({"edge", "match"})
+"""Targets without a classifier: they read bits, not pixels, so they have neither an accuracy nor codes."""
+
 
 @dataclass(frozen=True)
 class PartFigures:
@@ -184,6 +187,7 @@ class BuildReport:
         confusion: those pixels by true class (rows) and the circuit's answer (columns).
         model: the network that was compiled.
         command: what compiles the model file of the build folder again, run beside that folder.
+        evaluation: what measures its accuracies again, run there too; None if there are none.
         options: the options of the command that are part of the result.
         hashes: SHA-256 of files by name, in hexadecimal.
         tools: versions of programs by name.
@@ -207,6 +211,7 @@ class BuildReport:
     confusion: tuple[tuple[int, ...], ...] | None = None
     model: ModelFigures | None = None
     command: str | None = None
+    evaluation: str | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     hashes: Mapping[str, str] = field(default_factory=dict)
     tools: Mapping[str, str] = field(default_factory=dict)

@@ -30,7 +30,7 @@ class Change:
 
 
 def compare(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, tuple[Change, ...]]:
-    """What two reports tell apart, by section: figures with all lines, the others with those that differ.
+    """What two reports tell apart, by section: of figures all that one has, of the others those that differ.
 
     Args:
         first: the object of a `report.json`.
@@ -57,7 +57,7 @@ def compare(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, tu
         figures.append(_number(f"cubes of {table}", *cubes, kind="count", good=0))
     figures.append(_words("proof", first["proof"]["status"], second["proof"]["status"]))
     return {
-        "Figures": tuple(figures),
+        "Figures": tuple(x for x in figures if (x.before, x.after) != (MISSING, MISSING)),
         **{
             title: tuple(change for change in _mapping(first[key], second[key]) if change.change)
             for title, key in (("Options", "options"), ("Tools", "tools"), ("Files, SHA-256", "hashes"))

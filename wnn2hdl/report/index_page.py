@@ -12,19 +12,15 @@ from wnn2hdl.report.compare import compare, compare_tables
 from wnn2hdl.report.gate import Check
 from wnn2hdl.report.page import data_element, environment
 
-_HEADS = (
-    ("build", False),
-    ("target", False),
-    ("mode", False),
-    ("LUTs", True),
-    ("LUTs a pixel", True),
-    ("accuracy", True),
-    ("delay, ps", True),
-    ("codes", True),
-    ("coverage", True),
-    ("proof", False),
-)
-"""Columns, and whether they hold numbers."""
+_FIGURES = {
+    "LUTs": ("parts.{target}.luts", "count"),
+    "LUTs a pixel": ("parts.pixel.luts", "count"),
+    "accuracy": ("accuracy", "percent"),
+    "delay, ps": ("parts.{target}.delay_ps", "count"),
+    "codes": ("care.codes", "count"),
+    "coverage": ("care.coverage", "percent"),
+}
+"""Columns of numbers: where they stand in a report, and what they are."""
 
 
 REPORT = "wnn2hdl report"
@@ -91,6 +87,10 @@ def index_page(
         if (luts := entry.report["parts"][entry.report["target"]]["luts"]) is not None
         and (accuracy := entry.report["accuracy"]) is not None
     ]
+    # A column that is for none of these builds would tell nothing.
+    heads = [
+        head for head in _FIGURES if any(_figure(entry.report, head)[1] is not None for entry in entries)
+    ]
     comparison = {}
     if pair:
         first, second = pair
@@ -100,8 +100,10 @@ def index_page(
         environment()
         .get_template("index.html")
         .render(
-            entries=[{"name": entry.name, "link": entry.link, "cells": _cells(entry)} for entry in entries],
-            heads=_HEADS,
+            entries=[
+                {"name": entry.name, "link": entry.link, "cells": _cells(entry, heads)} for entry in entries
+            ],
+            heads=heads,
             chart=scatter(points) if len(points) > 1 else "",
             pair=[entry.name for entry in pair] if pair else (),
             comparison=comparison,
@@ -119,21 +121,23 @@ def is_index(page: str) -> bool:
     return f'<meta name="generator" content="{REPORT}">' in page
 
 
-def _cells(entry: Entry) -> list[tuple[str | Markup, bool]]:
-    report, target = entry.report, entry.report["target"]
-    parts, care, proof = report["parts"], report["care"], report["proof"]["status"]
-    figures = [
-        (f"parts.{target}.luts", parts[target]["luts"], "count"),
-        ("parts.pixel.luts", parts.get("pixel", {}).get("luts"), "count"),
-        ("accuracy", report["accuracy"], "percent"),
-        (f"parts.{target}.delay_ps", parts[target]["delay_ps"], "count"),
-        ("care.codes", care["codes"], "count"),
-        ("care.coverage", care["coverage"], "percent"),
-    ]
+def _figure(report: Mapping[str, Any], head: str) -> tuple[str, Any, str]:
+    """Where a figure of a column stands in a report, the figure, and what it is."""
+    place, kind = _FIGURES[head]
+    key = place.format(target=report["target"])
+    value: Any = report
+    for step in key.split("."):
+        value = value[step]
+    return key, value, kind
+
+
+def _cells(entry: Entry, heads: Sequence[str]) -> list[tuple[str | Markup, bool]]:
+    """The cells of a build's row after its name, and whether they hold numbers."""
+    report, proof = entry.report, entry.report["proof"]["status"]
     mark = "✓" if proof == "proved" and not entry.changes else "✗"
     return [
-        (target, False),
+        (report["target"], False),
         (report["mode"], False),
-        *((data_element(key, value, kind), True) for key, value, kind in figures),
+        *((data_element(*_figure(report, head)), True) for head in heads),
         (", ".join([f"{mark} {proof}", *entry.changes]), False),
     ]

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from wnn2hdl.report.build_report import UNCLASSIFIED
 from wnn2hdl.report.page import MISSING, form
 
 _COLUMNS = {
@@ -49,8 +50,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
             ["circuit", "LUTs", "registers", "source"],
             ([row["what"], row["luts"], row["registers"], row["source"]] for row in report["published"]),
         ),
-        "## Answers",
-        _table(["figure", "value"], _answers(report)),
+        _answers(report),
         _minimised(report["minimised"]),
         _mapping("Seconds", "stage", report["seconds"]),
         _mapping("Options", "option", report["options"]),
@@ -67,20 +67,26 @@ def _proof(proof: Mapping[str, Any]) -> str:
     return f"{proof['status']}{method}{seconds}{failure}"
 
 
-def _answers(report: Mapping[str, Any]) -> list[tuple[str, str]]:
+def _answers(report: Mapping[str, Any]) -> str:
     edges = report["edges"]
-    return [
-        ("accuracy of the circuit", form(report["accuracy"], "percent")),
-        ("accuracy of the model", form(report["model_accuracy"], "percent")),
-        ("pixel codes cared for", _cell(report["care"]["codes"])),
-        ("share of other imagery that these codes cover", form(report["care"]["coverage"], "percent")),
-        ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
-        *(
-            (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
-            for figure in ("precision", "recall", "f1")
-        ),
-        ("measured on", _cell(edges["imagery"])),
-    ]
+    answers: list[tuple[str, str]] = []
+    if report["target"] not in UNCLASSIFIED:
+        answers += [
+            ("accuracy of the circuit", form(report["accuracy"], "percent")),
+            ("accuracy of the model", form(report["model_accuracy"], "percent")),
+            ("pixel codes cared for", _cell(report["care"]["codes"])),
+            ("share of other imagery that these codes cover", form(report["care"]["coverage"], "percent")),
+        ]
+    if edges["name"] is not None:
+        answers += [
+            ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
+            *(
+                (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
+                for figure in ("precision", "recall", "f1")
+            ),
+            ("measured on", _cell(edges["imagery"])),
+        ]
+    return f"## Answers\n\n{_table(['figure', 'value'], answers)}" if answers else ""
 
 
 def _utilisation(report: Mapping[str, Any]) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup
 
 from wnn2hdl.ir import Lut, LutNetwork, Mux
+from wnn2hdl.report.build_report import UNCLASSIFIED
 from wnn2hdl.report.charts import cube_bars, lut_bars
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.schematic import draw
@@ -119,6 +120,8 @@ def build_page(
         report=report,
         what=TARGETS.get(report["target"], f"A circuit of target {report['target']}"),
         form=form,
+        classifies=report["target"] not in UNCLASSIFIED,
+        answers=report["target"] != "match",
         quoted=shlex.quote(report["name"]),
         measured=measured,
         resource_heads={

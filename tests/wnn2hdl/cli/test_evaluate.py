@@ -107,6 +107,16 @@ def test_a_build_is_measured_as_circuit_and_as_model(
     assert data["circuit"]["coverage"] == 1.0
 
 
+@pytest.mark.parametrize("target", ["edge", "match"])
+def test_a_build_without_a_classifier_is_refused(
+    run: Run, write_build: Callable[..., Path], tmp_path: Path, target: str
+) -> None:
+    folder = write_build(tmp_path / "a", target=target)
+    assert f"the build holds no classifier, so there is nothing to measure: {folder} (target {target});" in (
+        run("evaluate", folder).complaint()
+    )
+
+
 def test_the_embedded_landscapes_are_the_default(evaluate: Run, model: Path) -> None:
     assert evaluate(model)["images"] == 12
 

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from wnn2hdl.dataset import from_samples
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.pipeline.checking import Checked, check
 from wnn2hdl.pipeline.circuits import Circuits
 from wnn2hdl.pipeline.compile import Build, compile_model, require_luts
-from wnn2hdl.pipeline.design import Design
+from wnn2hdl.pipeline.design import Design, Target
 from wnn2hdl.pipeline.planning import CompileOptions
 from wnn2hdl.pipeline.training import Progress
 
@@ -96,15 +95,43 @@ def test_a_failing_compile_leaves_no_folder(model: WisardModel, tmp_path: Path) 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_labels_of_other_classes_are_refused_before_the_work(model: WisardModel, tmp_path: Path) -> None:
+def test_labels_of_other_classes_are_refused_before_the_work(
+    model: WisardModel, tested: CompileOptions, tmp_path: Path
+) -> None:
     steps: list[str] = []
-    others = replace(from_samples(1, 32, seed=5), classes=("forest", "burnt soil"))
+    palette = tmp_path / "palette.json"
+    palette.write_text('{"forest": "#000000", "burnt soil": "#ffffff"}')
+    options = replace(tested, palette=palette)
     with pytest.raises(InputError, match="different classes: forest, deforested / forest, burnt soil"):
-        compile_model(
-            model, tmp_path / "block", CompileOptions(), lambda step, *_: steps.append(step), others
-        )
+        compile_model(model, tmp_path / "block", options, lambda step, *_: steps.append(step))
     assert steps == []
-    assert list(tmp_path.iterdir()) == []
+    assert list(tmp_path.iterdir()) == [palette]
+
+
+@pytest.mark.parametrize("target", ["edge", "match"])
+def test_a_target_without_a_classifier_has_neither_accuracy_nor_codes(
+    model: WisardModel, tested: CompileOptions, tmp_path: Path, target: Target
+) -> None:
+    folder = tmp_path / target
+    compile_model(model, folder, replace(tested, target=target), silent)
+    report = json.loads((folder / "report.json").read_text())
+    assert report["accuracy"] is report["model_accuracy"] is report["confusion"] is None
+    assert report["evaluation"] is None
+    assert set(report["care"].values()) == {None}
+    tables = ["edge"] if target == "edge" else []
+    assert list(report["minimised"]) == list(report["options"]["mapping"]) == tables
+    assert report["edges"]["patterns"] == report["options"]["edge_patterns"] == (240 if tables else None)
+    told = (folder / "report.md").read_text() + (folder / "report.html").read_text()
+    assert ("Edge patterns" in told) == ("## Answers" in told) == (target == "edge")
+    for word in ("Accuracy of the circuit", "accuracy of the circuit", "odes cared for"):
+        assert word not in told
+
+
+def test_a_pixel_alone_has_no_edge_filter(pixel_build: Path) -> None:
+    report = json.loads((pixel_build / "report.json").read_text())
+    assert list(report["minimised"]) == list(report["options"]["mapping"]) == ["pixel"]
+    assert report["edges"]["name"] is None
+    assert "Edge patterns" not in (pixel_build / "report.html").read_text()
 
 
 def test_too_many_luts_fail() -> None:

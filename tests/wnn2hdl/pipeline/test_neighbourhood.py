@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -42,11 +43,13 @@ def random_neighbourhood(size: int) -> WisardModel:
 
 
 @pytest.fixture(scope="module")
-def neighbourhood_build(imagery: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def neighbourhood_build(
+    imagery: Path, tested: CompileOptions, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """A 5x5 neighbourhood in domain mode, compiled once."""
     folder = tmp_path_factory.mktemp("builds") / "five"
-    options = CompileOptions(mode="domain", care=imagery, care_minimum=20)
-    built = compile_model(random_neighbourhood(5), folder, options, silent, from_samples(2, 64, seed=5))
+    options = replace(tested, mode="domain", care=imagery, care_minimum=20)
+    built = compile_model(random_neighbourhood(5), folder, options, silent)
     assert built.failure is None
     return folder
 

@@ -1,5 +1,6 @@
 """Pages made of what lies in build folders."""
 
+import html
 import json
 import shlex
 import shutil
@@ -17,6 +18,7 @@ from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.planning import CompileOptions
 from wnn2hdl.pipeline.reporting import (
     command,
+    evaluation,
     open_entries,
     read_report,
     sample_picture,
@@ -42,7 +44,14 @@ def test_a_build_notes_confusion_model_and_command(build: Path) -> None:
     assert report["care"]["of"] == 256
     words = shlex.split(report["command"])
     assert words[:4] == ["wnn2hdl", "compile", "block/model.json", "-o"]
-    assert words[5:] == ["--mode", "domain", "--care", report["options"]["care"]]
+    options = report["options"]
+    images, masks = options["test_images"], options["test_masks"]
+    assert words[5:9] == ["--mode", "domain", "--care", options["care"]]
+    assert words[9:] == ["--test-images", images, "--test-masks", masks]
+    assert shlex.split(report["evaluation"])[2:] == ["block", "--images", images, "--masks", masks]
+    assert html.escape(report["evaluation"], quote=False).replace("'", "&#39;") in (
+        (build / "report.html").read_text()
+    )
 
 
 def test_the_command_leaves_out_what_is_usual_and_quotes() -> None:
@@ -58,6 +67,13 @@ def test_the_command_finds_its_imagery_from_the_folder_that_it_is_run_in(
     told = command("x", CompileOptions(care=Path("imagery"), edges="patterns.txt"))
     assert told.endswith(f"--care {tmp_path}/imagery --edges {tmp_path}/patterns.txt")
     assert command("x", CompileOptions(edges="learned")).endswith("--edges learned")
+    options = CompileOptions(test_images=Path("a b"), test_masks=Path("c"), palette=Path("p.json"))
+    assert evaluation("x", options) == (
+        f"wnn2hdl evaluate x --images '{tmp_path}/a b' --masks {tmp_path}/c --palette {tmp_path}/p.json"
+    )
+    assert command("x", options).endswith(
+        f"--test-images '{tmp_path}/a b' --test-masks {tmp_path}/c --palette {tmp_path}/p.json"
+    )
 
 
 def test_the_sample_is_the_middle_of_the_first_test_image() -> None:

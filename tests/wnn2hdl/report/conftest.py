@@ -51,6 +51,7 @@ def report() -> dict[str, Any]:
             ("forest", "deforested"), 2, 3, ("R7", "G7"), 7, ((0.25, 0.5, 1.0), (0.0, 0.75, 0.5)), {"seed": 3}
         ),
         command="wnn2hdl compile amazon/model.json -o amazon-again --mode domain --care 'my imagery'",
+        evaluation="wnn2hdl evaluate amazon --images 'my imagery' --masks masks",
         options={"edges": "boundary", "style": "luts", "simulated_vectors": {"match": 262144}},
         hashes={"model": "ab12"},
         tools={"wnn2hdl": "0.1.0", "pyosys": "0.70"},

@@ -63,7 +63,9 @@ def test_markdown_without_a_baseline_has_no_columns_for_it(report: dict[str, Any
     text = gate_markdown(
         {"amazon": report}, run_gate({"amazon": report}, {"amazon": ()}, Limits(), None), None
     )
-    assert text.startswith("### wnn2hdl: ✓ passed, 2 checks\n\n| build | result | LUTs | accuracy | proof |\n")
+    assert text.startswith(
+        "### wnn2hdl: ✓ passed, 2 checks\n\n| build | result | LUTs | accuracy | proof |\n"
+    )
     assert "| amazon | ✓ passed | 19 | 91.65 % | proved |" in text
 
 

@@ -28,6 +28,17 @@ def test_every_build_has_its_row_and_leads_to_its_page(entries: tuple[Entry, Ent
     assert page.count('aria-sort="none"') == page.count('<button type="button" class="sort">') == 10
 
 
+def test_columns_and_rows_that_are_for_none_of_the_builds_are_left_out(
+    entries: tuple[Entry, Entry],
+) -> None:
+    reports = [dict(entry.report) | {"accuracy": None, "model_accuracy": None} for entry in entries]
+    bare = [replace(entry, report=report) for entry, report in zip(entries, reports, strict=True)]
+    page = index_page(bare, (bare[0], bare[1]))
+    assert '<button type="button" class="sort">codes</button>' in page
+    assert "accuracy" not in page
+    assert "accuracy of the circuit" in index_page(bare, (bare[0], entries[1]))
+
+
 def test_two_builds_are_compared_if_asked_for(entries: tuple[Entry, Entry]) -> None:
     assert "compared</h2>" not in index_page(entries)
     page = index_page(entries, entries)

@@ -151,6 +151,35 @@ def test_a_report_without_images_model_and_tables_has_a_page(report: dict[str, A
     assert "None" not in page
 
 
+@pytest.mark.parametrize(("target", "tables"), [("edge", ["edge"]), ("match", [])])
+def test_a_target_without_a_classifier_shows_no_row_of_one(
+    report: dict[str, Any], networks: dict[str, LutNetwork], target: str, tables: list[str]
+) -> None:
+    for part in {"pixel", "edge", "block", "match"} - {target}:
+        report["parts"][part] = dict.fromkeys(report["parts"][part])
+    report |= {"target": target, "utilisation": {}, "accuracy": None, "model_accuracy": None}
+    report |= {"confusion": None, "minimised": {table: report["minimised"][table] for table in tables}}
+    report["care"] = dict.fromkeys(report["care"])
+    if target == "match":
+        report["edges"] = dict.fromkeys(report["edges"])
+    page = build_page(report, networks)
+    figures = Outline(page).figures
+    assert not [key for key in figures if key.startswith(("accuracy", "care.", "minimised.pixel"))]
+    assert ("edges.patterns" in figures) == ("#answers" in page) == (target == "edge")
+
+
+def test_the_commands_are_those_of_the_report(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    page = build_page(report, networks).replace("&#39;", "'")
+    assert report["command"] in page
+    assert report["evaluation"] in page
+    assert "That file does not tell the command that trained" in page
+    page = build_page(report | {"command": None, "evaluation": None}, networks)
+    assert "wnn2hdl evaluate" not in page
+    assert "IMAGES" not in page
+
+
 def test_limits_are_stated(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
     page = build_page(report, networks)
     assert "Yosys is not Vivado" in page
