@@ -12,6 +12,7 @@ from markupsafe import Markup
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
 
 INK, MUTED, RULE, ACCENT, PAPER = "#000001", "#000002", "#000003", "#000004", "#000005"
 """Colours that stand for the page's own while Matplotlib draws."""
@@ -29,12 +30,17 @@ def lut_bars(report: Mapping[str, Any]) -> Markup:
 
     Args:
         report: the object of `report.json`.
+
+    Returns:
+        The drawing; nothing where there is no figure.
     """
     measured = [
         (part, figures["luts"]) for part, figures in report["parts"].items() if figures["luts"] is not None
     ]
     published = [(figure["what"], figure["luts"]) for figure in report["published"]]
     rows = [*measured, *published]
+    if not rows:
+        return Markup()
 
     def paint(axes: "Axes") -> None:
         places = [i + (i >= len(measured)) * 0.9 for i in range(len(rows))]
@@ -50,14 +56,14 @@ def lut_bars(report: Mapping[str, Any]) -> Markup:
                 linestyle=(0, (3, 2)),
                 linewidth=1,
             )
-        most = max(luts for _, luts in rows)
+        most = max(1, *(luts for _, luts in rows))
         for place, (_, luts) in zip(places, rows, strict=True):
             axes.text(luts + most / 80, place, f"{luts:,}", va="center", color=INK, fontweight="bold")
         axes.set_yticks(places, [_short(name) for name, _ in rows])
         axes.set_ylim(places[-1] + 0.6, -0.6)
         axes.set_xlim(0, most * 1.08)
         axes.set_xlabel("LUTs")
-        if measured:
+        if measured and published:
             line = len(measured) - 0.05
             axes.axhline(line, color=RULE, linewidth=1)
             axes.text(
@@ -106,7 +112,7 @@ def cube_bars(minimised: Mapping[str, Mapping[str, int]]) -> Markup:
         axes.set_xlim(0.6, max(2, most) * 1.6)
         axes.xaxis.set_major_formatter("{x:,.0f}")
         axes.minorticks_off()
-        axes.set_yticks(range(len(minimised)), list(minimised))
+        axes.set_yticks(range(len(minimised)), [_short(name) for name in minimised])
         axes.set_ylim(len(minimised) - 0.5, -0.75)
         axes.set_xlabel("cubes, logarithmic: ○ as extracted, ● minimised")
 
@@ -118,29 +124,53 @@ def cube_bars(minimised: Mapping[str, Mapping[str, int]]) -> Markup:
 
 
 def scatter(points: Sequence[tuple[str, int, float]]) -> Markup:
-    """Accuracy against LUTs of several builds, each with its name.
+    """Accuracy against LUTs of several builds, each with its name; those at one place share a point.
 
     Args:
         points: name, LUTs and accuracy from 0 to 1.
     """
+    names: dict[tuple[float, float], list[str]] = {}
+    for name, x, y in points:
+        names.setdefault((x, 100 * y), []).append(name)
 
     def paint(axes: "Axes") -> None:
-        axes.scatter([x for _, x, _ in points], [100 * y for _, _, y in points], s=40, color=ACCENT, zorder=2)
-        for name, x, y in points:
-            axes.annotate(_short(name), (x, 100 * y), xytext=(7, 5), textcoords="offset points", color=INK)
+        from matplotlib.ticker import MaxNLocator
+
+        axes.scatter([x for x, _ in names], [y for _, y in names], s=40, color=ACCENT, zorder=2)
         axes.margins(x=0.12, y=0.2)
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.grid(color=RULE, linewidth=0.6)
         axes.set_axisbelow(True)
         axes.set_xlabel("LUTs of the target")
         axes.set_ylabel("accuracy of the circuit, %")
+        _label(axes, {place: _short(", ".join(shared)) for place, shared in names.items()})
 
     told = "; ".join(f"{name}: {x} LUTs, {100 * y:.2f} %" for name, x, y in points)
     return _svg(paint, f"Accuracy against LUTs. {told}.", "scatter", 3.0)
 
 
+_CORNERS = ((7, 5), (7, -14), (-7, 5), (-7, -14), (7, 19), (7, -28), (-7, 19), (-7, -28))
+"""Where a label may stand, in points from its place; on the left it ends there."""
+
+
+def _label(axes: "Axes", texts: Mapping[tuple[float, float], str]) -> None:
+    """Write texts beside their places, each where it meets none before it, if there is such a corner."""
+    # The layout, which decides where places lie, is made when the figure is drawn.
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    taken: list[Bbox] = []
+    for place, text in texts.items():
+        label = axes.annotate(text, place, xytext=_CORNERS[0], textcoords="offset points", color=INK)
+        for corner in _CORNERS:
+            label.set_position(corner)
+            label.set_horizontalalignment("left" if corner[0] > 0 else "right")
+            if not label.get_window_extent().count_overlaps(taken):
+                break
+        taken.append(label.get_window_extent())
+
+
 def _short(text: str, width: int = 56) -> str:
-    # Matplotlib takes a dollar sign for the start of a formula.
-    text = text.replace("$", r"\$")
     return text if len(text) <= width else text[: width - 1].rstrip() + "…"
 
 
@@ -151,6 +181,8 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
 
     style: dict[Any, Any] = {
         "svg.hashsalt": prefix,
+        # Names are no formulas, whatever dollar signs they hold.
+        "text.parse_math": False,
         "svg.fonttype": "none",
         "font.size": 10,
         "text.color": INK,
@@ -165,7 +197,7 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
     }
     with rc_context(style), warnings.catch_warnings():
         # The browser draws the text, with whatever fonts it has.
-        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        warnings.filterwarnings("ignore", "Glyph .* missing from font|Matplotlib currently does not support")
         figure = Figure(figsize=(_WIDTH, height), layout="constrained")
         axes = figure.add_subplot()
         axes.tick_params(axis="y", length=0)

@@ -42,8 +42,8 @@ RESOURCES = {
 
 _KINDS = {"luts": "LUTs", "ffs": "flip-flops", "bram36": "block RAMs", "dsp": "DSP slices"}
 
-_NOTES = 12
-"""Notes of a training that are shown."""
+_NOTES, _DEPTH = 12, 4
+"""Notes of a training that are shown, and how deep they may be nested."""
 
 
 @dataclass(frozen=True)
@@ -247,10 +247,12 @@ def _notes(training: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _note(value: Any) -> str:
+def _note(value: Any, depth: int = 0) -> str:
+    if depth > _DEPTH:
+        return "…"
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} {_note(inner)}" for key, inner in value.items())
+        return ", ".join(f"{key} {_note(inner, depth + 1)}" for key, inner in value.items())
     if isinstance(value, Sequence) and not isinstance(value, str):
-        texts = [_note(inner) for inner in value]
+        texts = [_note(inner, depth + 1) for inner in value]
         return ", ".join(texts) if len(texts) < 9 else f"{len(texts)}: {texts[0]} … {texts[-1]}"
     return form(value, "text" if isinstance(value, str | bool) else "count")

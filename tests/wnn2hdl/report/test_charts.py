@@ -58,6 +58,53 @@ def test_names_cannot_break_out_of_a_chart(report: dict[str, Any]) -> None:
     assert any(text.startswith("<script>alert('x')</script> & $x^2$") for text in texts(svg))
 
 
+@pytest.mark.parametrize("name", ["$\\frac$", "$x^2$", r"a\$b", "\u0627\u0644", "\u0915"])
+def test_a_name_is_no_formula(report: dict[str, Any], name: str) -> None:
+    report["parts"][name] = report["parts"]["pixel"]
+    sizes = {"cubes_before": 5, "cubes_after": 3}
+    for svg in (lut_bars(report), cube_bars({name: sizes}), scatter([(name, 1, 0.9), ("b", 2, 0.8)])):
+        assert name in texts(svg)
+
+
+def test_a_build_of_wires_alone_has_bars_of_no_length(report: dict[str, Any]) -> None:
+    for figures in report["parts"].values():
+        figures["luts"] = 0
+    assert texts(lut_bars(report | {"published": []})).count("0") >= 6
+
+
+def test_without_figures_there_are_no_bars(report: dict[str, Any]) -> None:
+    for figures in report["parts"].values():
+        figures["luts"] = None
+    assert lut_bars(report | {"published": []}) == ""
+    assert "135" in texts(lut_bars(report))
+
+
+def test_builds_at_one_place_share_a_label() -> None:
+    found = texts(scatter([("before", 19, 0.9), ("after", 19, 0.9), ("else", 25, 0.8)]))
+    assert "before, after" in found
+    assert "before" not in found
+
+
+def test_labels_of_near_builds_do_not_meet() -> None:
+    svg = scatter(
+        [("before it was changed", 19, 0.9), ("after it was changed", 19, 0.9001), ("else", 40, 0.5)]
+    )
+    nodes = [node for node in ET.fromstring(svg).iter() if node.tag.endswith("text")]
+    places = {
+        "".join(node.itertext()): [float(x) for x in re.findall(r"-?[\d.]+", node.attrib["transform"])]
+        for node in nodes
+        if "transform" in node.attrib
+    }
+    first, second = places["before it was changed"], places["after it was changed"]
+    assert abs(first[2] - second[2]) > 10
+
+
+def test_luts_are_counted_in_whole_numbers() -> None:
+    found = texts(scatter([("a", 1, 0.9), ("b", 2, 0.8)]))
+    assert {"1", "2"} <= set(found)
+    assert not [text for text in found if re.fullmatch(r"[01]\.\d+", text)]
+
+
 @pytest.mark.parametrize("after", [0, 5])
 def test_cubes_of_a_constant_table_can_be_drawn(after: int) -> None:
     svg = cube_bars({"pixel": {"cubes_before": after, "cubes_after": after}})

@@ -264,6 +264,16 @@ def test_notes_of_the_training_are_told_whatever_they_are(
         assert f"<td>{text}</td>" in page
 
 
+def test_notes_nested_deeper_than_anybody_reads_are_cut_off(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    note: Any = "bottom"
+    for _ in range(600):
+        note = {"in": note}
+    report["model"]["training"] = {"deep": note}
+    assert "<td>in in in in in …</td>" in build_page(report, networks)
+
+
 def test_a_circuit_of_wires_alone_has_a_drawing_without_luts(report: dict[str, Any]) -> None:
     wires = LutNetwork(("R7",), (), (("class_bit0", "R7"), ("class_bit1", "1")))
     page = build_page(report, {"pixel": wires})

@@ -46,3 +46,36 @@ def test_what_the_pages_stand_on_must_be_there(report: dict[str, Any]) -> None:
             check_report(report | {"parts": parts}, Path("r.json"))
     with pytest.raises(ModelFileError, match="at model/saturation/0"):
         check_report(report | {"model": report["model"] | {"saturation": [[]]}}, Path("r.json"))
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        ("tools/py.osys", "0.70"),
+        ("seconds/a.b", 1.0),
+        ("options/a.b", 1),
+        ("minimised/a.b", {}),
+        ("parts/a.b", {"luts": 1, "delay_ps": 1}),
+        ("hashes/model.json", "ab12"),
+        ("published/0/luts", "many"),
+        ("published/0/luts", None),
+        ("published/0/what", 5),
+        ("edges/precision", "high"),
+        ("edges/patterns", "all"),
+        ("parts/block/muxf7", "hi"),
+        ("parts/block/luts", 10**400),
+        ("options/simulated_vectors", "abc"),
+        ("options/edges", {"a": {"b": 1}}),
+        ("model/rams", "many"),
+        ("proof/failure", 5),
+    ],
+)
+def test_what_a_page_cannot_show_is_refused(report: dict[str, Any], place: str, value: object) -> None:
+    *steps, last = place.split("/")
+    where: Any = report
+    for step in steps:
+        where = where[int(step) if isinstance(where, list) else step]
+    where[int(last) if isinstance(where, list) else last] = value
+    with pytest.raises(ModelFileError, match="not a report, or one of another version") as caught:
+        check_report(report, Path("r.json"))
+    assert len(caught.value.line()) < 400
