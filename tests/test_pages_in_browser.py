@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from wnn2hdl.ir import LutNetwork
 from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.reporting import open_entries, write_page
-from wnn2hdl.report import index_page
+from wnn2hdl.report import Care, ModelFigures, index_page
 from wnn2hdl.report.logic import expression, grid
 from wnn2hdl.report.page import form
 
@@ -203,6 +203,42 @@ def test_many_classes_do_not_stick_out_either(
     page.set_viewport_size({"width": width, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.locator("table.confusion td[style]").count() == 64
+
+
+BROKEN = """[...document.querySelectorAll(
+    'main data, main .number, main table.counted td, main .confusion small')]
+  .filter(x => !x.closest('td.mono')).filter(x => {
+    const range = document.createRange();
+    range.selectNodeContents(x);
+    const lines = [...range.getClientRects()].filter(r => r.width > 0).map(r => [r.top, r.bottom]);
+    return lines.some(([top]) => lines.some(([, bottom]) => bottom <= top + 1));
+  }).map(x => x.textContent)"""
+"""Figures that stand on more than one line."""
+
+
+@pytest.mark.parametrize("width", [360, 480, 1180])
+def test_no_figure_is_broken_into_lines(
+    open_page: Callable[..., Page], write_build: Callable[..., Path], tmp_path: Path, width: int
+) -> None:
+    kinds = ModelFigures(
+        tuple(f"kind of ground {number}" for number in range(6)), 3, 6, ("R7",), 1, ((0.5,),) * 6
+    )
+    confusion = ((114_022,) * 6,) * 6
+    folders = [
+        write_build(tmp_path / name, model=kinds, confusion=confusion, accuracy=accuracy, **figures)
+        for name, accuracy, figures in (
+            ("before", 0.912, {"utilisation": {"block": {"luts": 0.0357, "ffs": 0.0}}}),
+            ("after", 0.8654, {"care": Care(1_234_567, 0.5, 16_777_216)}),
+        )
+    ]
+    index = tmp_path / "index.html"
+    entries = open_entries(folders, index)
+    index.write_text(index_page(entries, (entries[0], entries[1])))
+    for path in (index, *(folder / "report.html" for folder in folders)):
+        page = open_page(path)
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate(BROKEN) == [], path
 
 
 def test_texts_stand_out_from_their_ground(open_page: Callable[..., Page], folder: Path) -> None:
