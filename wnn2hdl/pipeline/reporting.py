@@ -16,7 +16,7 @@ from wnn2hdl.dataset import Dataset
 from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import Palette, png_bytes, read_rgb
-from wnn2hdl.ir import WisardModel, window_codes
+from wnn2hdl.ir import Neighbourhood, WisardModel, window_codes
 from wnn2hdl.ir.files import read_json, write_text
 from wnn2hdl.pipeline.classifiers import circuit_classifier
 from wnn2hdl.pipeline.design import MODEL_FILE, Design
@@ -60,7 +60,10 @@ def page(design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8]) -
     palette = Palette.of(design.model.classes)
     colours = palette.to_json()
     pictures = _pictures(design, sample, palette)
-    return build_page(report, design.networks, pictures, tuple(colours.items()) if pictures else ())
+    encoder = design.model.encoder
+    window = encoder if isinstance(encoder, Neighbourhood) else None
+    legend = tuple(colours.items()) if pictures else ()
+    return build_page(report, design.networks, pictures, legend, window)
 
 
 def write_page(folder: Path) -> Path:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from wnn2hdl.ir import Lut, LutNetwork, Mux
+from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.report.build_report import UNCLASSIFIED
 from wnn2hdl.report.charts import cube_bars, lut_bars
 from wnn2hdl.report.logic import Grid, contents, expression, grid
@@ -98,6 +98,7 @@ def build_page(
     networks: Mapping[str, LutNetwork],
     pictures: Sequence[Picture] = (),
     legend: Sequence[tuple[str, str]] = (),
+    window: Neighbourhood | None = None,
 ) -> str:
     """The page of a build; the same arguments give the same bytes.
 
@@ -110,6 +111,7 @@ def build_page(
             those of parts that were not measured are not drawn.
         pictures: sample pictures.
         legend: class names and their colours in the pictures, as CSS writes colours.
+        window: what a classifier of neighbourhoods looks at; its networks have the names of the taps.
     """
     templates = environment()
     templates.globals["figure"] = figures_of(report)
@@ -122,6 +124,13 @@ def build_page(
         form=form,
         classifies=report["target"] not in UNCLASSIFIED,
         answers=report["target"] != "match",
+        window=_window(window) if window else (),
+        places={
+            name: f"row {tap.row}, column {tap.column}"
+            for name, tap in zip(window.names, window.taps, strict=True)
+        }
+        if window
+        else {},
         quoted=shlex.quote(report["name"]),
         measured=measured,
         resource_heads={
@@ -230,6 +239,16 @@ def _cell(part: str, position: int, cell: Lut | Mux, network: LutNetwork) -> _Ce
     text = f"{cell.name} = {cell.select} ? {cell.high} : {cell.low}"
     kind = "MUXF7" if joins_luts else "MUXF8"
     return _Cell(place, cell.name, kind, text, None, None, (cell.low, cell.high, cell.select))
+
+
+def _window(neighbourhood: Neighbourhood) -> list[list[str]]:
+    """The names of the taps that read each pixel of a window, by row and column."""
+    names: list[list[list[str]]] = [
+        [[] for _ in range(neighbourhood.size)] for _ in range(neighbourhood.size)
+    ]
+    for name, tap in zip(neighbourhood.names, neighbourhood.taps, strict=True):
+        names[tap.row][tap.column].append(name)
+    return [[", ".join(cell) for cell in row] for row in names]
 
 
 def _sum(parts: Mapping[str, Mapping[str, Any]]) -> str:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import LutNetwork
+from wnn2hdl.ir import BitSelect, LutNetwork, Neighbourhood, Tap
 from wnn2hdl.report.page import Picture, build_page, form, percent
 
 VOID = {"meta", "link", "img", "input", "br"}
@@ -142,6 +142,36 @@ def test_a_part_of_several_networks_shows_them_all(
     assert "Edge patterns" not in page
 
 
+def test_a_neighbourhood_shows_which_pixels_it_looks_at(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    bits = BitSelect(("R7", "G7"))
+    window = Neighbourhood(3, (Tap(0, 2, bits, 8), Tap(1, 1, bits, 8), Tap(0, 2, bits, 6)))
+    report["parts"]["neighbourhood"] = report["parts"]["sobel"]
+    several = dict.fromkeys(window.names, networks["edge"]) | {"combiner": networks["pixel"]}
+    page = build_page(report | {"target": "neighbourhood", "utilisation": {}}, several, window=window)
+    assert re.findall(r'<td class="(.*?)">(.*?)</td>', page[: page.index("<h3")])[-9:] == [
+        *[("", ""), ("", ""), ("tap", "tap0, tap2")],
+        *[("", ""), ("tap middle", "tap1"), ("", "")],
+        *[("", ""), ("", ""), ("", "")],
+    ]
+    assert "tap0: row 0, column 2; 1 LUT<" in page
+    assert "tap1: row 1, column 1; 1 LUT<" in page
+    assert "combiner: 2 LUTs, 1 multiplexer<" in page
+    assert "classified pixel" not in build_page(report, networks)
+
+
+def test_why_the_matcher_has_no_drawing_is_said(report: dict[str, Any]) -> None:
+    for part in ("pixel", "edge", "block"):
+        report["parts"][part] = dict.fromkeys(report["parts"][part])
+    page = build_page(report | {"target": "match", "utilisation": {}}, {})
+    assert "Match and count is not drawn" in page
+    assert "<code>match.v</code>" in page
+    assert '<a href="#circuit">' in page
+    report["parts"]["match"] = dict.fromkeys(report["parts"]["match"])
+    assert "Match and count" not in build_page(report | {"target": "block"}, {})
+
+
 def test_a_report_without_images_model_and_tables_has_a_page(report: dict[str, Any]) -> None:
     for key in ("accuracy", "model_accuracy", "confusion", "model", "command"):
         report[key] = None
@@ -164,7 +194,8 @@ def test_a_target_without_a_classifier_shows_no_row_of_one(
         report["edges"] = dict.fromkeys(report["edges"])
     page = build_page(report, networks)
     figures = Outline(page).figures
-    assert not [key for key in figures if key.startswith(("accuracy", "care.", "minimised.pixel"))]
+    assert not [key for key in figures if key.startswith(("accuracy", "care.", "minimised.pixel", "model."))]
+    assert "#model" not in page
     assert ("edges.patterns" in figures) == ("#answers" in page) == (target == "edge")
 
 
