@@ -94,6 +94,7 @@ def select_neighbourhood(
     ]
     answers = np.stack([table[codes] for table, codes in zip(tables, evidence.codes, strict=True)], axis=1)
     last = _best_lut(answers, evidence.target)
+    progress(0, ROUNDS * width)
     for turn in range(ROUNDS * width):
         tap = turn % width
         codes = bits_to_codes(answers) & ~(1 << tap)

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, Task, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 Command = Callable[..., Any]
@@ -25,21 +25,42 @@ def emit(data: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 @contextmanager
 def progress() -> Iterator[Callable[[str, int, int], None]]:
-    """A live display on stderr of what is being done.
+    """A live display on stderr of what is being done; none where nothing is reported.
 
     Yields:
-        ``report(step, done, total)``: a step's name and how far it is; each step keeps its own line.
+        ``report(step, done, total)``: a step's name and how far it is. Each step has its own line; one that
+        falls back has begun anew and gets another.
     """
     columns = (TextColumn("{task.description:<28}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
-    with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True)) as bars:
-        tasks: dict[str, Any] = {}
+    console = Console(stderr=True)
+    bars = Progress(*columns, TimeElapsedColumn(), console=console)
+    running: dict[str, Task] = {}
 
-        def report(step: str, done: int, total: int) -> None:
-            if step not in tasks:
-                tasks[step] = bars.add_task(step, total=total)
-            bars.update(tasks[step], completed=done, total=total)
+    def report(step: str, done: int, total: int) -> None:
+        if not running:
+            # Not before: rich ends a display with an empty line, even one that has shown nothing.
+            bars.start()
+        if step not in running or done < running[step].completed:
+            _make_room(bars, console)
+            added = bars.add_task(step, total=total)
+            running[step] = next(task for task in bars.tasks if task.id == added)
+        bars.update(running[step].id, completed=done, total=total)
 
+    try:
         yield report
+    finally:
+        if running:
+            for task in bars.tasks:
+                bars.update(task.id, visible=True)
+            bars.stop()
+
+
+def _make_room(bars: Progress, console: Console) -> None:
+    """Hide the first finished line until the end where a terminal would cut off the last, which runs."""
+    shown = [task for task in bars.tasks if task.visible]
+    finished = next((task for task in shown if task.finished), None)
+    if console.is_terminal and len(shown) >= console.height - 1 and finished:
+        bars.update(finished.id, visible=False)
 
 
 def parts_table(report: dict[str, Any], folder: Path) -> str:

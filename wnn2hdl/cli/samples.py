@@ -72,6 +72,7 @@ def _write_flight(output: Path, frames: int, shape: tuple[int, int], seed: int, 
     report("generating country", 0, 1)
     made = make_flight(seed, shape, frames=frames)
     report("generating country", 1, 1)
+    report("writing files", 0, frames + 3)
     # Besides the frames: map, poses and camera.
     for done, _ in enumerate(write_flight(output, made), start=1):
         report("writing files", done, frames + 3)

@@ -14,7 +14,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, bits_to_codes, codes_to_bits
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.pipeline.crossval import Trainer, cross_validate
-from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.pipeline.training import Progress, tracked
 from wnn2hdl.tables import care_set, pixel_table
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
@@ -111,19 +111,18 @@ def measure(
     Raises:
         InputError: the images cannot be used.
     """
-    images = []
-    for image in dataset:
-        images.append(colour_histogram(image, len(dataset.classes)))
-        progress("reading images", len(images), len(dataset))
+    images = [
+        colour_histogram(image, len(dataset.classes))
+        for image in tracked(dataset, "reading images", len(dataset), progress)
+    ]
     methods = [*_bit_selections(images, dataset.classes, seed, max_luts)]
     methods += _discriminators(images, dataset.classes, trials, seed, progress)
     points = []
-    for name, train in methods:
+    for name, train in tracked(methods, "measuring candidates", len(methods), progress):
         accuracy = cross_validate(images, train)
         model = train(range(len(images)))
         network = map_luts(pixel_table(model)).network
         points.append(Point(len(network.luts), accuracy, name, model))
-        progress("measuring candidates", len(points), len(methods))
     return tuple(points)
 
 
@@ -155,11 +154,10 @@ def _discriminators(
     encoder = high_bits(BITS_PER_CHANNEL)
     histograms = np.stack([code_histogram(image, encoder) for image in images])
     ranked = []
-    for trial in range(trials):
+    for trial in tracked(range(trials), "drawing mappings", trials, progress):
         train = partial(train_discriminators, histograms, encoder, classes, seed + trial)
         if not saturates(train(range(len(images)))):
             ranked.append((-cross_validate(images, train), trial, train))
-        progress("drawing mappings", trial + 1, trials)
     ranked.sort(key=lambda entry: entry[:2])
     methods: list[tuple[str, Trainer]] = []
     for _, trial, train in ranked[:FINALISTS]:

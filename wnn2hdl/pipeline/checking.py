@@ -62,6 +62,7 @@ def check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
     }
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
+    progress("simulating, proving, counting", 0, len(jobs))
     for position, result in in_parallel(lambda job: job(), jobs.values()):
         results[names[position]] = result
         seconds[names[position]] = time.perf_counter() - started
@@ -93,6 +94,7 @@ def synthesise_parts(design: Design, circuits: Circuits, progress: Progress) -> 
         finished.append(name)
         progress("synthesising", len(finished), len(jobs))
 
+    progress("synthesising", 0, len(jobs))
     return synthesise_all(jobs, done=done)
 
 

@@ -97,12 +97,14 @@ def compile_model(
         with clock.stage("plan"):
             planned = plan(model, options, progress)
         with clock.stage("emit"):
+            progress("writing Verilog", 0, 1)
             circuits = emit(
                 planned.design,
                 staging,
                 sobel_threshold=options.sobel_threshold,
                 options=_header(planned.design, options),
             )
+            progress("writing Verilog", 1, 1)
         with clock.stage("check and synthesise"):
             checked = check(planned.design, circuits, progress)
         with clock.stage("evaluate"):

@@ -7,7 +7,7 @@ from wnn2hdl.bitselect import LEAST_SHARE, LUTS, main_drift, select_neighbourhoo
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.pipeline.training import Progress, tracked
 
 WINDOWS = 8000
 """Windows drawn from each image, wherever they lie wholly inside; more changed little."""
@@ -36,14 +36,13 @@ def train_neighbourhood(
             mend="allow more, or train without --neighbourhood",
         )
     windows, labels, means = [], [], []
-    for position, image in enumerate(dataset):
+    for position, image in enumerate(tracked(dataset, "reading images", len(dataset), progress)):
         drawn = _draw(image, size, np.random.default_rng([seed, position]))
         windows.append(drawn[0])
         labels.append(drawn[1])
         background = image.pixels[image.labels == 0]
         if len(background) > LEAST_SHARE * len(image.pixels):
             means.append(background.mean(axis=0))
-        progress("reading images", position + 1, len(dataset))
     model = select_neighbourhood(
         np.concatenate(windows),
         np.concatenate(labels),

@@ -89,6 +89,7 @@ def play(
     else:
         inputs, expected, cared = _neighbourhood_answers(design, specification, windows)
     total = len(inputs["window"])
+    progress("simulating windows", 0, total)
     started = time.perf_counter()
     if simulator == "amaranth":
         seconds = simulate(

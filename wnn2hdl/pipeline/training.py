@@ -1,7 +1,8 @@
 """From labelled images to a trained model."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,24 @@ from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
 Progress = Callable[[str, int, int], None]
 """``report(step, done, total)``: what is being done and how far it is."""
+
+Item = TypeVar("Item")
+
+
+def tracked(items: Iterable[Item], step: str, total: int, progress: Progress) -> Iterator[Item]:
+    """Items one by one; a report is made before the first and when each is done with.
+
+    Args:
+        items: what is worked through.
+        step: what is being done.
+        total: how many items there are; of none nothing is reported.
+        progress: told.
+    """
+    if total:
+        progress(step, 0, total)
+    for done, item in enumerate(items, start=1):
+        yield item
+        progress(step, done, total)
 
 
 def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
@@ -31,9 +50,8 @@ def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -
         )
     shape = (len(dataset.classes), 1 << encoder.width)
     histograms = np.zeros((len(dataset), *shape), dtype=np.int64)
-    for position, image in enumerate(dataset):
+    for position, image in enumerate(tracked(dataset, "reading images", len(dataset), progress)):
         histograms[position] = _histogram(image, encoder, shape)
-        progress("reading images", position + 1, len(dataset))
     for name, pixels in zip(dataset.classes, histograms.sum(axis=(0, 2)), strict=True):
         if pixels == 0:
             raise InputError(
@@ -101,9 +119,8 @@ def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> Wi
         InputError: an image cannot be read.
     """
     seen = np.zeros(1 << COLOURS.width, dtype=np.bool_)
-    for position, image in enumerate(dataset):
+    for image in tracked(dataset, "noting colours", len(dataset), progress):
         seen[COLOURS.codes(image.pixels)] = True
-        progress("noting colours", position + 1, len(dataset))
     return replace(model, colours=np.flatnonzero(seen))
 
 

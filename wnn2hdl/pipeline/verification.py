@@ -45,6 +45,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         ToolError: an outside program is missing or failed.
     """
     require_build(folder)
+    progress("checking hashes", 0, 1)
     problems = check_manifest(folder)
     progress("checking hashes", 1, 1)
     if any("missing" in problem for problem in problems):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import ColourHistogram, Dataset, colour_histogram, split
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect
-from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.pipeline.training import Progress, tracked
 
 TRAINING_PIXELS = 20_000
 """Pixels drawn for training unless told otherwise."""
@@ -88,10 +88,10 @@ def draw(dataset: Dataset, *, pixels: int, seed: int, progress: Progress) -> Pix
     if len(dataset) < 2:
         raise InputError("a sweep needs images to hold out", value=f"{len(dataset)} image", mend="give two")
     trained, held = split(dataset.names, len(dataset) // 2)
-    histograms: dict[str, ColourHistogram] = {}
-    for image in dataset:
-        histograms[image.name] = colour_histogram(image, len(dataset.classes))
-        progress("reading images", len(histograms), len(dataset))
+    histograms = {
+        image.name: colour_histogram(image, len(dataset.classes))
+        for image in tracked(dataset, "reading images", len(dataset), progress)
+    }
     for side, names in (("training", trained), ("held-out", held)):
         totals = sum(histograms[name].counts.sum(axis=1) for name in names)
         for label, total in zip(dataset.classes, np.atleast_1d(totals), strict=True):

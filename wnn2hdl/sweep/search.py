@@ -73,6 +73,7 @@ def search(
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     sampler = optuna.samplers.NSGAIISampler(population_size=POPULATION, seed=recipe.seed)
     study = optuna.create_study(directions=["maximize", "minimize"], sampler=sampler)
+    progress("searching", 0, results.size)
     for start in range(0, results.size, POPULATION):
         asked = [study.ask() for _ in range(min(POPULATION, results.size - start))]
         trials = [_trial(suggestion, recipe, cells) for suggestion in asked]

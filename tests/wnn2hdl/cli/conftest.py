@@ -19,9 +19,14 @@ class Done(NamedTuple):
         """The one line that tells of bad usage or bad input."""
         assert self.status == 2, self.stderr
         assert self.stdout == ""
-        assert "Traceback" not in self.stderr
-        (line,) = (line for line in self.stderr.splitlines() if line.startswith("wnn2hdl: "))
+        (line,) = self.stderr.splitlines()
+        assert line.startswith("wnn2hdl: ")
         return line
+
+    def complaint_after_work(self) -> str:
+        """Likewise, of what went wrong after some progress was shown."""
+        assert " % " in self.stderr
+        return self._replace(stderr=self.stderr.splitlines()[-1]).complaint()
 
 
 @pytest.fixture

@@ -127,7 +127,6 @@ def test_the_embedded_flight_needs_no_files(
         (["--calibrate", "3"], "3 frames are too few to calibrate on; give at least 4"),
         (["--calibrate-frames", "."], "--calibrate-frames are those of a CSV of --calibrate"),
         (["--calibrate", "all"], "neither a count nor a CSV"),
-        (["--calibrate", "9"], "too few frames are left to score: 9 of 10 calibrate"),
         (["--window", "0"], "--window"),
         (["--window", "nan"], "no finite number"),
         (["--search", "around"], "--search"),
@@ -142,6 +141,11 @@ def test_bad_usage_is_one_line_and_status_2(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert fault in run("locate", *arguments).complaint()
+
+
+def test_too_few_frames_are_told_once_the_flight_is_there(run: Run) -> None:
+    told = run("locate", "--calibrate", "9").complaint_after_work()
+    assert "too few frames are left to score: 9 of 10 calibrate" in told
 
 
 def test_bad_files_are_one_line_and_status_2(run: Run, folder: Path, tmp_path: Path) -> None:

@@ -61,8 +61,16 @@ def test_the_same_inputs_give_the_same_bytes(
 @pytest.mark.parametrize("style", ["rtl", "luts"])
 def test_a_pixel_alone_in_both_styles(model: WisardModel, tmp_path: Path, style: str) -> None:
     options = CompileOptions(target="pixel", style=style)  # type: ignore[arg-type]
-    built = compile_model(model, tmp_path / "pixel", options, silent)
+    told: list[tuple[str, int]] = []
+    built = compile_model(model, tmp_path / "pixel", options, lambda step, done, _: told.append((step, done)))
     assert built.failure is None
+    starts = [step for step, done in told if done == 0]
+    assert starts == [
+        "minimising pixel",
+        "minimising edge",
+        "writing Verilog",
+        "simulating, proving, counting",
+    ]
     assert built.report["care"]["codes"] == 2**8
     text = (tmp_path / "pixel" / "pixel.v").read_text()
     assert ("DONT_TOUCH" in text) == (style == "luts")

@@ -9,7 +9,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import COLOURS, Thermometer, WisardModel
 from wnn2hdl.pipeline.classifiers import model_classifier
 from wnn2hdl.pipeline.evaluation import evaluate
-from wnn2hdl.pipeline.training import image_histograms, pixel_encoder, train, with_colours
+from wnn2hdl.pipeline.training import image_histograms, pixel_encoder, tracked, train, with_colours
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -87,3 +87,22 @@ def test_balanced_classes_weigh_alike_so_that_a_rare_one_is_found() -> None:
     assert [int(model.evaluate_all_codes()[bits][0]) for model in found.values()] == [0, 1]
     assert [int(model.counts[1].sum()) for model in found.values()] == [1, 99]
     assert [model.training["pixels"] for model in found.values()] == [100, 100]
+
+
+def test_a_stage_is_told_of_when_it_starts_and_after_each_item() -> None:
+    told: list[tuple[str, int, int]] = []
+
+    def report(step: str, done: int, total: int) -> None:
+        told.append((step, done, total))
+
+    for item in tracked("ab", "reading", 2, report):
+        report(item, -1, -1)
+    assert told == [
+        ("reading", 0, 2),
+        ("a", -1, -1),
+        ("reading", 1, 2),
+        ("b", -1, -1),
+        ("reading", 2, 2),
+    ]
+    assert list(tracked((), "reading", 0, report)) == []
+    assert len(told) == 5
