@@ -15,6 +15,7 @@ from wnn2hdl.navigate.recording import Recording, split
 from wnn2hdl.navigate.summary import write_run
 from wnn2hdl.pipeline.budget import train_under_budget
 from wnn2hdl.pipeline.compile import Build, compile_model
+from wnn2hdl.pipeline.folder import require_replaceable
 from wnn2hdl.pipeline.landscapes import IMAGES, MASKS, write_landscapes
 from wnn2hdl.pipeline.planning import CompileOptions
 from wnn2hdl.pipeline.playback import play
@@ -26,7 +27,7 @@ from wnn2hdl.scan.local import run_locally as scan_locally
 from wnn2hdl.scan.options import ScanOptions
 from wnn2hdl.scan.output import OVERLAY_FILE
 from wnn2hdl.scan.scanning import Scanner
-from wnn2hdl.sweep import Outcome, Recipe, draw, grid, present, run_locally, run_sweep
+from wnn2hdl.sweep import Outcome, Recipe, discard_another, draw, grid, present, run_locally, run_sweep
 
 if TYPE_CHECKING:
     from wnn2hdl.navigate.results import SearchKind
@@ -48,7 +49,8 @@ CALIBRATION_FRAMES = 5
 WINDOW_M = 95.0
 """Half the side of the window that the reference searched."""
 
-PAGE = "index.html"
+PAGE, REFERENCE_BUILD, SMALLEST_BUILD = "index.html", "reference", "smallest"
+"""Names in the demo's folder."""
 
 REFERENCE = "the reference design's discriminators (n = 4, k = 16), on the colours of the training landscapes"
 SMALLEST = f"the most accurate classifier of at most {MAX_LUTS} LUTs a pixel, on every input"
@@ -90,9 +92,11 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
         progress: told of every stage.
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: the folder cannot be written, or something else is where a build is to go.
         ToolError: an outside program is missing or failed.
     """
+    for name in (REFERENCE_BUILD, SMALLEST_BUILD):
+        require_replaceable(folder / name)
     training = _landscapes(folder / "training", TRAINING_IMAGES, TRAINING_SEED, progress)
     test = _landscapes(folder / "test", TEST_IMAGES, TEST_SEED, progress)
     outcome = _sweep(training, folder / "sweep", seed, progress)
@@ -102,10 +106,10 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
     model = with_colours(model, training, progress)
     options = CompileOptions(test_images=folder / "test" / IMAGES, test_masks=folder / "test" / MASKS)
     domain = replace(options, mode="domain", care=folder / "training" / IMAGES)
-    reference = compile_model(model, folder / "reference", domain, progress)
+    reference = compile_model(model, folder / REFERENCE_BUILD, domain, progress)
     small = train_under_budget(training, MAX_LUTS, trials=0, seed=seed, progress=progress)
     small = with_colours(small, training, progress)
-    smallest = compile_model(small, folder / "smallest", options, progress)
+    smallest = compile_model(small, folder / SMALLEST_BUILD, options, progress)
     picture = folder / "test" / IMAGES / f"{test.names[0]}"
     playback = play(smallest.folder, picture, "amaranth", progress)
     scanned = flight = None
@@ -131,6 +135,8 @@ def _landscapes(folder: Path, count: int, seed: int, progress: Progress) -> Data
 def _sweep(training: Dataset, folder: Path, seed: int, progress: Progress) -> Outcome:
     plan = grid(Recipe(seed, high_bits().bits, None, 1), ADDRESS_BITS, RAMS, TRIALS)
     sets = draw(training, pixels=SWEEP_PIXELS, seed=seed, progress=progress)
+    # Of an earlier demo with another seed.
+    discard_another(sets, plan.recipe, folder)
     outcome = run_sweep(sets, plan, folder, run_locally, progress, finalist_trials=FINALIST_TRIALS)
     present(outcome, sets, folder)
     return outcome

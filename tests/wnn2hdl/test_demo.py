@@ -1,5 +1,6 @@
 """What a newcomer sees first; the sizes are smaller here, the stages the same."""
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from wnn2hdl import demo
+from wnn2hdl.errors import InputError
 from wnn2hdl.navigate import recording
 from wnn2hdl.pipeline.verification import open_build
 
@@ -48,6 +50,29 @@ def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path) -> None:
     assert len(fixes) == recording.SAMPLE_FRAMES - demo.CALIBRATION_FRAMES
     assert made.missing == ""
     assert steps[0] == "landscapes"
+
+
+@pytest.mark.usefixtures("small")
+def test_another_seed_begins_the_sweep_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(demo, "train", stop)
+    for seed in (0, 1):
+        with pytest.raises(KeyboardInterrupt):
+            demo.run_demo(tmp_path, seed, lambda *_: None)
+    settings = json.loads((tmp_path / "sweep" / "sweep.json").read_text())
+    assert settings["recipe"]["seed"] == 1
+
+
+def test_a_folder_that_is_no_build_is_told_before_the_first_stage(tmp_path: Path) -> None:
+    (tmp_path / "smallest").mkdir()
+    (tmp_path / "smallest" / "notes.txt").write_text("mine")
+    steps: list[str] = []
+    with pytest.raises(InputError, match=r"the output exists and is no earlier build: .*smallest"):
+        demo.run_demo(tmp_path, 0, lambda step, *_: steps.append(step))
+    assert steps == []
+    assert [path.name for path in tmp_path.iterdir()] == ["smallest"]
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from wnn2hdl.sweep.grid import Plan, Recipe, Trial, grid
 from wnn2hdl.sweep.local import run_locally
 from wnn2hdl.sweep.page import present
 from wnn2hdl.sweep.pixels import TRAINING_PIXELS, PixelSets, draw, seen_colours
-from wnn2hdl.sweep.study import Outcome, find_trial, run_sweep
+from wnn2hdl.sweep.study import Outcome, discard_another, find_trial, run_sweep
 from wnn2hdl.sweep.trial import Record, answers_digest, rebuild, run_trial
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "Record",
     "Trial",
     "answers_digest",
+    "discard_another",
     "draw",
     "find_trial",
     "grid",

@@ -208,8 +208,34 @@ def _fill(results: Results, plan: Plan, sets: PixelSets, run: Runner, progress: 
         progress(step, len(results), len(plan))
 
 
+def discard_another(sets: PixelSets, recipe: Recipe, folder: Path) -> None:
+    """Remove the results in a folder if they are those of other pixels or of another recipe.
+
+    Raises:
+        ModelFileError: the settings of the sweep there are damaged.
+    """
+    if _differences(_identity(sets, recipe), folder / IDENTITY_FILE):
+        # The settings last: without them, results that are left would be taken for those of any sweep.
+        for path in (folder / RESULTS_FILE, *folder.glob("search-*.jsonl"), folder / IDENTITY_FILE):
+            path.unlink(missing_ok=True)
+
+
 def _check_identity(sets: PixelSets, recipe: Recipe, path: Path) -> None:
-    identity = {
+    identity = _identity(sets, recipe)
+    different = _differences(identity, path)
+    if different:
+        raise InputError(
+            f"the folder holds a sweep with another {' and '.join(different)}",
+            value=path.parent,
+            mend="choose another folder, or the same images and options to go on",
+        )
+    if not path.exists():
+        write_json(path, identity)
+
+
+def _identity(sets: PixelSets, recipe: Recipe) -> dict[str, Any]:
+    """What must be the same for results to belong to one sweep."""
+    return {
         "format": "wnn2hdl-sweep",
         "version": wnn2hdl.__version__,
         "pixels": sets.pixels,
@@ -218,17 +244,14 @@ def _check_identity(sets: PixelSets, recipe: Recipe, path: Path) -> None:
         "held_out_images": list(sets.held_out_images),
         "recipe": recipe.to_json(),
     }
+
+
+def _differences(identity: dict[str, Any], path: Path) -> list[str]:
+    """What a sweep on disk has otherwise; nothing where there is none."""
     if not path.exists():
-        write_json(path, identity)
-        return
+        return []
     known = read_json(path, "the settings of a sweep")
-    different = [key for key in identity if known.get(key) != identity[key]]
-    if different:
-        raise InputError(
-            f"the folder holds a sweep with another {' and '.join(different)}",
-            value=path.parent,
-            mend="choose another folder, or the same images and options to go on",
-        )
+    return [key for key in identity if known.get(key) != identity[key]]
 
 
 def _ranges(plan: Plan) -> tuple[tuple[int, int], tuple[int, int]]:

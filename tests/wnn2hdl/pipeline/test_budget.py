@@ -103,7 +103,7 @@ def test_a_budget_that_nothing_fits_is_refused() -> None:
 def test_progress_tells_of_images_and_candidates(measured: Measured) -> None:
     points, told = measured
     assert [step for step in told if step[0] == "reading images"] == [
-        ("reading images", done, 3) for done in (1, 2, 3)
+        ("reading images", done, 3) for done in (0, 1, 2, 3)
     ]
     assert ("drawing mappings", 1, 1) in told
     assert told[-1] == ("measuring candidates", len(points), len(points))

@@ -13,7 +13,7 @@ import pytest
 from wnn2hdl.errors import InputError
 from wnn2hdl.sweep.grid import Plan, Trial, grid
 from wnn2hdl.sweep.pixels import PixelSets
-from wnn2hdl.sweep.study import Outcome, circuits, find_trial, run_sweep
+from wnn2hdl.sweep.study import Outcome, circuits, discard_another, find_trial, run_sweep
 from wnn2hdl.sweep.trial import Record, answers_digest, rebuild, run_trials
 
 TABLES = ("trials.csv", "finalists.csv", "search.csv", "summary.json")
@@ -143,6 +143,24 @@ def test_a_folder_of_another_sweep_is_refused(sets: PixelSets, plan: Plan, tmp_p
     other = replace(plan, recipe=replace(plan.recipe, seed=6))
     with pytest.raises(InputError, match="the folder holds a sweep with another recipe"):
         swept(sets, other, tmp_path)
+
+
+def test_a_sweep_begins_anew_where_another_was_discarded(
+    sets: PixelSets, plan: Plan, unbroken: Path, tmp_path: Path
+) -> None:
+    swept(sets, replace(plan, recipe=replace(plan.recipe, seed=6)), tmp_path, search=True)
+    discard_another(sets, plan.recipe, tmp_path)
+    swept(sets, plan, tmp_path, search=True)
+    assert tables(tmp_path) == tables(unbroken)
+
+
+def test_a_sweep_of_the_same_settings_is_kept(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
+    discard_another(sets, plan.recipe, tmp_path / "none")
+    swept(sets, plan, tmp_path)
+    results = tmp_path / "results.jsonl"
+    before = results.read_bytes()
+    discard_another(sets, plan.recipe, tmp_path)
+    assert results.read_bytes() == before
 
 
 def test_a_sweep_of_failures_ends_without_a_decision(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
