@@ -228,7 +228,7 @@ def test_a_failed_build_gives_the_reason_and_claims_nothing(
     report["proof"] |= {"status": "failed", "failure": "the pixel differs for (1,2,3)"}
     page = build_page(report, networks)
     assert "This build failed" in page
-    assert "the pixel differs for (1,2,3)" in page
+    assert "The circuit is not the model: the pixel differs for (1,2,3). Do not use it." in page
     assert '<strong class="bad">not proved</strong> equal to the model: failed' in page
     assert "Equal to the model on" not in page
     assert "Domain mode." not in page
