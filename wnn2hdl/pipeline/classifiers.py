@@ -11,7 +11,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import COLOURS, PictureEncoder, WisardModel, codes_to_bits
 from wnn2hdl.pipeline.design import Design
 from wnn2hdl.pipeline.evaluation import circuit_answers
-from wnn2hdl.pipeline.folder import FAILED
+from wnn2hdl.pipeline.folder import failure
 from wnn2hdl.pipeline.training import picture_encoder
 from wnn2hdl.pipeline.verification import open_build
 
@@ -91,10 +91,8 @@ def open_classifier(path: Path) -> PictureClassifier:
         ModelFileError: the file is missing, damaged or no model.
         InputError: the folder is no build or a failed one, or the model reads no pixels.
     """
-    if (path / FAILED).exists():
-        raise InputError(
-            "the build failed its checks: its circuit is not its model", value=path, mend="compile it again"
-        )
+    if reason := failure(path):
+        raise InputError(f"the build failed: {reason}", value=path, mend="compile the model again")
     if path.is_dir():
         design = open_build(path)[0]
         return replace(circuit_classifier(design), colours=_colours(design.model))

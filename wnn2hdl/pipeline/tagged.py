@@ -14,7 +14,7 @@ from wnn2hdl.images import by_stem, read_rgb
 from wnn2hdl.pipeline.classifiers import PictureClassifier
 from wnn2hdl.pipeline.evaluation import with_halo
 from wnn2hdl.pipeline.measures import CONFIDENCE, RESAMPLES
-from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.pipeline.training import Progress, tracked
 
 COLUMNS = ("image_name", "tags")
 
@@ -90,14 +90,13 @@ def evaluate_tagged(
     files = by_stem(chips)
     counted = cleared_classes(classifier.classes)
     shares = {}
-    for position, name in enumerate(cleared, start=1):
+    for name in tracked(cleared, "classifying chips", len(cleared), progress):
         if name not in files:
             raise InputError(
                 f"no picture of this name in {chips}", value=name, mend="correct the file of tags"
             )
         answers = classifier.classify(with_halo(read_rgb(files[name]), classifier.halo))
         shares[name] = float(np.isin(answers, counted).mean())
-        progress("classifying chips", position, len(cleared))
     positive = np.array([share for name, share in shares.items() if cleared[name]])
     negative = np.array([share for name, share in shares.items() if not cleared[name]])
     auc = float(_auc(positive, negative)) if len(positive) and len(negative) else None

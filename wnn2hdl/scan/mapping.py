@@ -16,6 +16,9 @@ from wnn2hdl.scan.source import Source
 from wnn2hdl.scan.task import Task
 from wnn2hdl.scan.windows import Window, cut
 
+CLASSIFYING = "classifying windows"
+"""The step that `write_classes` tells of."""
+
 Runner = Callable[[Task, Iterable[Window]], Generator[WindowResult, None, None]]
 """Classifies windows, in any order."""
 
@@ -66,6 +69,7 @@ def write_classes(
     """
     bands = cut(source.height, source.width, source.block, task.method.side)
     total = sum(map(len, bands))
+    progress(CLASSIFYING, len(kept), total)
     with (
         ClassWriter(output, source.height, source.width, source.georeference, palette.colours) as raster,
         closing(run(task, _missing(bands, kept))) as done,
@@ -73,7 +77,7 @@ def write_classes(
         for band in bands:
             while not all(window.index in kept for window in band):
                 kept.append(next(done))
-                progress("classifying windows", len(kept), total)
+                progress(CLASSIFYING, len(kept), total)
             rows = np.empty((band[0].height, source.width), dtype=np.uint8)
             for window in band:
                 columns = slice(window.column, window.column + window.width)

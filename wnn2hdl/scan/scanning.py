@@ -6,6 +6,7 @@ import shutil
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ from wnn2hdl.scan.change import write_change
 from wnn2hdl.scan.cleanup import sieve_in_place
 from wnn2hdl.scan.ellipsoid import PixelAreas
 from wnn2hdl.scan.journal import Journal
-from wnn2hdl.scan.mapping import Coverage, Runner, write_classes
+from wnn2hdl.scan.mapping import CLASSIFYING, Coverage, Runner, write_classes
 from wnn2hdl.scan.options import ScanOptions
 from wnn2hdl.scan.output import (
     BEFORE,
@@ -52,6 +53,9 @@ from wnn2hdl.scan.summary import (
     warnings,
 )
 from wnn2hdl.scan.task import Task
+
+_PARTS = 1000
+"""How finely it is told how far a folder's picture is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,8 +169,10 @@ class Scanner:
     def _folder(self, folder: Path, pictures: Mapping[str, Path], output: Path) -> dict[str, Any]:
         summaries = []
         for number, (stem, path) in enumerate(pictures.items()):
-            summaries.append(self._finished(path, output / stem))
-            self.progress("scanning pictures", number + 1, len(pictures))
+            one = replace(self, progress=partial(self._part, number, len(pictures)))
+            one.progress(CLASSIFYING, 0, 1)
+            summaries.append(one._finished(path, output / stem))
+            one.progress(CLASSIFYING, 1, 1)
         coverage = Coverage(
             sum(x["classified_pixels"] for x in summaries), sum(x["coverage"]["pixels"] for x in summaries)
         )
@@ -187,6 +193,12 @@ class Scanner:
         }
         discard(output)
         return self._finish(output, summary)
+
+    def _part(self, number: int, count: int, step: str, done: int, total: int) -> None:
+        """Tell how far a picture of a folder is; a line for each step of each would be too many."""
+        if step == CLASSIFYING:
+            share = number + done / total
+            self.progress("scanning pictures", int(share * _PARTS), count * _PARTS)
 
     def _finished(self, picture: Path, output: Path) -> dict[str, Any]:
         """Scan a picture unless that was done already with the same options."""

@@ -94,7 +94,7 @@ def test_what_was_seen_too_rarely_to_fire_is_familiar_all_the_same(model: Wisard
 def test_a_failed_build_answers_nothing(pixel_build: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(pixel_build, tmp_path / "failed")
     (folder / "FAILED").write_text("differs from the model at code 3\n")
-    with pytest.raises(InputError, match="the build failed its checks"):
+    with pytest.raises(InputError, match="the build failed: differs from the model at code 3: "):
         open_classifier(folder)
 
 

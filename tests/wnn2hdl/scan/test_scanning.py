@@ -346,3 +346,18 @@ def test_a_folder_takes_the_place_of_a_picture(scan: Scan, picture_file: Path, t
     scan(picture_file, tmp_path / "out")
     scan(picture_file.parent, tmp_path / "out")
     assert names(tmp_path / "out") == {"picture", "summary.json", "summary.md"}
+
+
+def test_a_folder_is_one_step_that_never_falls_back(model_file: Path, tmp_path: Path) -> None:
+    (tmp_path / "chips").mkdir()
+    for name, height in (("a", 40), ("b", 9000), ("c", 40)):
+        write_png(tmp_path / "chips" / f"{name}.png", np.zeros((height, 900, 3), dtype=np.uint8))
+    told: list[tuple[str, int, int]] = []
+    run = partial(run_locally, 1)
+    scanner = Scanner.open(model_file, ScanOptions(), run, lambda *step: told.append(step))
+    scanner.scan(tmp_path / "chips", tmp_path / "out")
+    assert {step for step, _, _ in told} == {"scanning pictures"}
+    done = [share for _, share, _ in told]
+    assert done == sorted(done)
+    assert {total for _, _, total in told} == {done[-1]}
+    assert any(1000 < share < 2000 for share in done), "a large picture's windows are told of"
