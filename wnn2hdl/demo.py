@@ -1,5 +1,6 @@
 """Everything on the embedded default: landscapes, sweep, circuits, proof, a map, a flight and a page."""
 
+import shlex
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -9,7 +10,9 @@ from wnn2hdl.dataset import Dataset, from_masks
 from wnn2hdl.encode import high_bits
 from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.images import write_png
+from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.files import make_folder, write_text
+from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.navigate.flight import FlightRun, run_flight
 from wnn2hdl.navigate.recording import Recording, split
 from wnn2hdl.navigate.summary import write_run
@@ -103,12 +106,12 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
     model = train(
         training, high_bits(), address_bits=4, rams=16, bleaching=None, seed=seed, progress=progress
     )
-    model = with_colours(model, training, progress)
+    model = _trained(model, training, folder, seed, "", progress)
     options = CompileOptions(test_images=folder / "test" / IMAGES, test_masks=folder / "test" / MASKS)
     domain = replace(options, mode="domain", care=folder / "training" / IMAGES)
     reference = compile_model(model, folder / REFERENCE_BUILD, domain, progress)
     small = train_under_budget(training, MAX_LUTS, trials=0, seed=seed, progress=progress)
-    small = with_colours(small, training, progress)
+    small = _trained(small, training, folder, seed, f" --max-luts {MAX_LUTS} --trials 0", progress)
     smallest = compile_model(small, folder / SMALLEST_BUILD, options, progress)
     picture = folder / "test" / IMAGES / f"{test.names[0]}"
     playback = play(smallest.folder, picture, "amaranth", progress)
@@ -125,6 +128,16 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
     pair = (entries[0], entries[1])
     write_text(folder / PAGE, index_page(entries, pair, (), exhibits, lead, maker="wnn2hdl demo"))
     return Demo(folder / PAGE, outcome, reference, smallest, playback.windows, scanned, flight, missing)
+
+
+def _trained(
+    model: WisardModel, dataset: Dataset, folder: Path, seed: int, choice: str, progress: Progress
+) -> WisardModel:
+    """A model with the colours it saw, and a note of the command that does what was done here."""
+    images, masks = (shlex.quote(str((folder / "training" / name).resolve())) for name in (IMAGES, MASKS))
+    command = f"wnn2hdl train --images {images} --masks {masks}{choice} --seed {seed}"
+    model = with_colours(model, dataset, progress)
+    return replace(model, training=model.training | {COMMAND: command})
 
 
 def _landscapes(folder: Path, count: int, seed: int, progress: Progress) -> Dataset:

@@ -2,13 +2,16 @@
 
 import json
 import re
+import shlex
 import sys
 from pathlib import Path
 
 import pytest
 
 from wnn2hdl import demo
+from wnn2hdl.cli import main
 from wnn2hdl.errors import InputError
+from wnn2hdl.ir import WisardModel
 from wnn2hdl.navigate import recording
 from wnn2hdl.pipeline.verification import open_build
 
@@ -32,7 +35,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("small")
-def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path) -> None:
+def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     steps: list[str] = []
     made = demo.run_demo(tmp_path, 0, lambda step, *_: steps.append(step))
     page = made.page.read_text(encoding="utf-8")
@@ -50,6 +53,13 @@ def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path) -> None:
     assert len(fixes) == recording.SAMPLE_FRAMES - demo.CALIBRATION_FRAMES
     assert made.missing == ""
     assert steps[0] == "landscapes"
+    for build in (made.reference, made.smallest):
+        model = WisardModel.load(build.folder / "model.json")
+        monkeypatch.setattr(
+            "sys.argv", [*shlex.split(model.training["command"]), "-o", str(tmp_path / "m.json")]
+        )
+        assert main() == 0
+        assert WisardModel.load(tmp_path / "m.json").digest() == model.digest()
 
 
 @pytest.mark.usefixtures("small")

@@ -18,6 +18,7 @@ from wnn2hdl.cli.options import (
     masks_option,
     palette_option,
     seed_option,
+    spoken_command,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.dataset import Dataset
@@ -25,6 +26,7 @@ from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.files import make_folder
+from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.pipeline.budget import Point, measure, pareto_front, train_under_budget
 from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
 from wnn2hdl.pipeline.training import Progress, train, with_colours
@@ -153,6 +155,8 @@ def train_command(
         else:
             model = options.train(dataset, seed, report)
         model = with_colours(model, dataset, report)
+    command = spoken_command({"output", "as_json"})
+    model = replace(model, training=model.training | {COMMAND: command})
     model.save(output)
     summary = _summary(model, output, len(dataset))
     if pareto:

@@ -1,9 +1,12 @@
 """Options that several commands share."""
 
+import shlex
+from collections.abc import Container
 from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
@@ -46,6 +49,26 @@ class BleachingType(click.ParamType[int | str]):
         if not str(value).isdecimal() or int(value) < 1:
             self.fail(f"{value!r} is neither 'auto' nor a whole number of at least 1", param, ctx)
         return int(value)
+
+
+def spoken_command(leave_out: Container[str]) -> str:
+    """What the user said to the running command, as a shell takes it from any folder: paths are whole.
+
+    Args:
+        leave_out: names of parameters, such as those of the output.
+    """
+    context = click.get_current_context()
+    words = ["wnn2hdl", str(context.info_name)]
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        said = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        if name in leave_out or not said:
+            continue
+        value = context.params[name]
+        words.append(parameter.opts[0])
+        if value is not True:
+            words.append(str(value.resolve() if isinstance(value, Path) else value))
+    return shlex.join(words)
 
 
 def labelled(

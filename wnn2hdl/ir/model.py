@@ -21,6 +21,10 @@ FORMAT = "wnn2hdl-model"
 VERSION = 1
 
 
+COMMAND = "command"
+"""Key in `WisardModel.training` of the command line that trained the model, all but its ``-o``."""
+
+
 @dataclass(frozen=True, eq=False)
 class WisardModel:
     """A WiSARD: one discriminator a class, each of ``k`` RAMs with ``n`` address bits.

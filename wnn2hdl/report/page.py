@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup
 
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
+from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.report.build_report import UNCLASSIFIED
 from wnn2hdl.report.charts import cube_bars, lut_bars
 from wnn2hdl.report.logic import Grid, contents, expression, grid
@@ -149,6 +150,7 @@ def build_page(
         legend=legend,
         classes=model["classes"] if model else [f"class {i}" for i in range(len(confusion or ()))],
         notes=_notes(model["training"]) if model else [],
+        training=_training(report["name"], model["training"]) if model else "",
         options={key: value for key, value in report["options"].items() if not isinstance(value, Mapping)},
         lut_chart=lut_bars(report),
         cube_chart=cube_bars(report["minimised"]) if report["minimised"] else "",
@@ -259,8 +261,14 @@ def _sum(parts: Mapping[str, Mapping[str, Any]]) -> str:
     return f"The block is nine pixels of {pixel} and an edge filter of {edge}: {block}."
 
 
+def _training(name: str, training: Mapping[str, Any]) -> str:
+    """The command that trains the model again, beside the build; nothing if the model does not tell it."""
+    command = training.get(COMMAND)
+    return f"{command} -o {shlex.quote(f'{name}-again.json')}" if isinstance(command, str) else ""
+
+
 def _notes(training: Mapping[str, Any]) -> list[tuple[str, str]]:
-    texts = {key.replace("_", " "): _note(value) for key, value in training.items()}
+    texts = {key.replace("_", " "): _note(value) for key, value in training.items() if key != COMMAND}
     return [(key, text if len(text) < 160 else text[:159].rstrip() + "…") for key, text in texts.items()][
         :_NOTES
     ]

@@ -38,6 +38,9 @@ def test_training_prints_one_json_object_and_nothing_else(
     )  # fmt: skip
     assert done.status == 0, done.stderr
     assert json.loads(done.stdout)["bits"] == ["R7", "G7"]
+    assert json.loads((tmp_path / "m.json").read_text())["training"]["command"] == (
+        f"wnn2hdl train --images {images} --masks {masks} --bits R7,G7 --address-bits 2 --rams 1"
+    )
     done = run("evaluate", tmp_path / "m.json", "--images", images, "--masks", masks, "--json")
     assert json.loads(done.stdout)["accuracy"] == 1.0
     assert json.loads(done.stdout)["images"] == 1
