@@ -10,6 +10,7 @@ from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.errors import InputError
+from wnn2hdl.ir.files import made_folder
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.poses import Pose, frame_files, read_poses
 from wnn2hdl.navigate.recording import Recording, split
@@ -144,7 +145,7 @@ def locate_command(
         raise InputError(
             "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, mend="give both"
         )
-    with progress() as report:
+    with made_folder(output), progress() as report:
         if map_file and frames and poses_file:
             scored, calibrating = _divided(read_poses(poses_file), calibration, calibrate_frames)
             files = frame_files(scored, frames) | frame_files(calibrating, calibrate_frames or frames)

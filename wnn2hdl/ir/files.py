@@ -5,6 +5,8 @@ import json
 import math
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +97,20 @@ def make_folder(path: Path) -> None:
         ) from error
     if not os.access(path, os.W_OK):
         raise InputError("cannot write into the folder", value=path, mend="choose another one")
+
+
+@contextmanager
+def made_folder(path: Path) -> Iterator[None]:
+    """As `make_folder`; a folder that is new goes again if the block fails and leaves nothing in it."""
+    new = not path.exists()
+    make_folder(path)
+    try:
+        yield
+    except BaseException:
+        if new:
+            with suppress(OSError):
+                path.rmdir()
+        raise
 
 
 def read_json(path: Path, what: str) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Container, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from wnn2hdl.errors import InputError
@@ -40,24 +40,6 @@ def require_apart(inputs: Iterable[Path], output: Path) -> None:
     for path in inputs:
         if path.resolve() in results:
             raise InputError("the scan would write over what it reads", value=path, mend="choose another -o")
-
-
-@contextmanager
-def made(folder: Path) -> Iterator[None]:
-    """Make a folder if it is missing; it goes again if the block fails and leaves nothing in it.
-
-    Raises:
-        InputError: it cannot be made or written.
-    """
-    new = not folder.exists()
-    make_folder(folder)
-    try:
-        yield
-    except BaseException:
-        if new:
-            with suppress(OSError):
-                folder.rmdir()
-        raise
 
 
 @contextmanager

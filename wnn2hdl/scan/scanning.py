@@ -16,7 +16,7 @@ from wnn2hdl.dataset import cleared_classes
 from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.images import by_stem
-from wnn2hdl.ir.files import read_json, write_json, write_text
+from wnn2hdl.ir.files import made_folder, read_json, write_json, write_text
 from wnn2hdl.pipeline.classifiers import PictureClassifier, open_classifier
 from wnn2hdl.pipeline.training import Progress
 from wnn2hdl.raster import NODATA, RasterReader, Reading, add_overviews, same_grid
@@ -38,7 +38,6 @@ from wnn2hdl.scan.output import (
     deliver,
     discard,
     emptied,
-    made,
     require_apart,
 )
 from wnn2hdl.scan.overlay import overlay_palette, write_overlay
@@ -120,7 +119,7 @@ class Scanner:
             self._check_folder(picture, before)
             pictures = by_stem(picture)
             require_apart([self.model, *pictures.values()], output)
-            with made(output):
+            with made_folder(output):
                 return self._folder(picture, pictures, output)
         reading = replace(self.options.reading, mask=before_mask)
         earlier = replace(self, options=replace(self.options, reading=reading))
@@ -128,7 +127,7 @@ class Scanner:
         if before is not None:
             files += earlier._check_earlier(before, picture, self.options.reading)
         require_apart([self.model, *files], output)
-        with made(output):
+        with made_folder(output):
             if before is None:
                 return self._finish(output, self._picture(picture, output))
             first = earlier._finished(before, output / BEFORE)
@@ -208,7 +207,7 @@ class Scanner:
             known = {}
         if known.get("identity") == self._identity(picture) and (output / CLASSES_FILE).is_file():
             return known
-        with made(output):
+        with made_folder(output):
             return self._finish(output, self._picture(picture, output))
 
     def _picture(self, picture: Path, output: Path) -> dict[str, Any]:
@@ -220,7 +219,11 @@ class Scanner:
         limit = self._minimum_pixels(source)
         palette = overlay_palette(self.classifier.classes)
         work = output / WORK
-        with made(work), Journal(work / "windows", identity) as kept, emptied(work / "results") as results:
+        with (
+            made_folder(work),
+            Journal(work / "windows", identity) as kept,
+            emptied(work / "results") as results,
+        ):
             raster = results / CLASSES_FILE
             coverage = write_classes(task, source, kept, self.run, raster, palette, self.progress)
             classify_seconds = time.perf_counter() - started

@@ -148,6 +148,11 @@ def test_too_few_frames_are_told_once_the_flight_is_there(run: Run) -> None:
     assert "too few frames are left to score: 9 of 10 calibrate" in told
 
 
+def test_a_place_that_cannot_be_written_is_told_before_the_work(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    assert "cannot make the folder" in run("locate", "-o", tmp_path / "file" / "out").complaint()
+
+
 def test_bad_files_are_one_line_and_status_2(run: Run, folder: Path, tmp_path: Path) -> None:
     def refused(arguments: list[str], fault: str) -> None:
         assert fault in run("locate", *arguments, "-o", tmp_path / "out").complaint()

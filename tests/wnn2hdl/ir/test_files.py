@@ -132,3 +132,20 @@ def test_a_file_is_open_in_one_place_at_a_time(tmp_path: Path) -> None:
     os.close(files.open_alone(path, "scan"))
     with pytest.raises(InputError, match=r"cannot write the scan: .*No such file"):
         files.open_alone(tmp_path / "none" / "journal", "scan")
+
+
+def test_a_new_folder_goes_again_if_nothing_came_of_it(tmp_path: Path) -> None:
+    def fail(folder: Path, *names: str) -> None:
+        with files.made_folder(folder):
+            for name in names:
+                (folder / name).touch()
+            raise InputError("bad input")
+
+    (tmp_path / "old").mkdir()
+    for folder in ("old", "new"):
+        with pytest.raises(InputError, match="bad input"):
+            fail(tmp_path / folder)
+    assert [path.name for path in tmp_path.iterdir()] == ["old"]
+    with pytest.raises(InputError, match="bad input"):
+        fail(tmp_path / "new", "finished")
+    assert (tmp_path / "new" / "finished").exists()
