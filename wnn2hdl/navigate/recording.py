@@ -13,7 +13,7 @@ from wnn2hdl.images import picture_size, read_rgb
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.poses import Pose
 from wnn2hdl.navigate.world import WorldMap
-from wnn2hdl.samples.flight import make_flight
+from wnn2hdl.samples.flight import Flight, make_flight
 
 SAMPLE_MAP = (1000, 1000)
 SAMPLE_FRAMES = 10
@@ -76,29 +76,33 @@ class Recording:
         seen = flight.camera
         camera = Camera.of_focal(seen.focal_px, seen.width, seen.height, seen.tilt_deg)
         numbers = {pose.frame: number for number, pose in enumerate(flight.poses)}
-        poses = tuple(
-            Pose(
-                at.frame,
-                at.latitude_deg,
-                at.longitude_deg,
-                at.height_m,
-                at.yaw_deg,
-                at.pitch_deg,
-                at.roll_deg,
-            )
-            for at in flight.poses
-        )
         return cls(
             "embedded map",
             world,
             replace(camera, distortion=seen.distortion),
-            poses,
+            poses_of(flight),
             lambda pose: flight.frame(numbers[pose.frame]),
         )
 
     def scoring(self, poses: Sequence[Pose]) -> Self:
         """The same flight with these poses only."""
         return replace(self, poses=tuple(poses))
+
+
+def poses_of(flight: Flight) -> tuple[Pose, ...]:
+    """The poses of a generated flight."""
+    return tuple(
+        Pose(
+            at.frame,
+            at.latitude_deg,
+            at.longitude_deg,
+            at.height_m,
+            at.yaw_deg,
+            at.pitch_deg,
+            at.roll_deg,
+        )
+        for at in flight.poses
+    )
 
 
 def split(poses: Sequence[Pose], calibrating: int) -> tuple[tuple[Pose, ...], tuple[Pose, ...]]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from wnn2hdl.navigate.camera import Camera
 from wnn2hdl.navigate.flight import FlightRun, run_flight
 from wnn2hdl.navigate.poses import Pose
-from wnn2hdl.navigate.recording import Recording, split
+from wnn2hdl.navigate.recording import Recording, poses_of, split
 from wnn2hdl.navigate.results import SearchKind
 from wnn2hdl.navigate.world import WorldMap
 from wnn2hdl.samples.flight import make_flight
@@ -41,18 +41,7 @@ class Flying:
             spacing_m=20,
             gusts_deg=1.5,
         )
-        poses = tuple(
-            Pose(
-                at.frame,
-                at.latitude_deg,
-                at.longitude_deg,
-                at.height_m,
-                at.yaw_deg,
-                at.pitch_deg,
-                at.roll_deg,
-            )
-            for at in flight.poses
-        )
+        poses = poses_of(flight)
         calibrating, scored = split(poses, 4)
         scored = tuple(replace(pose, latitude_deg=pose.latitude_deg + aside_deg) for pose in scored)
         numbers = {pose.frame: number for number, pose in enumerate(poses)}
