@@ -112,7 +112,7 @@ class Scanner:
 
         Raises:
             InputError: a file cannot be read or written, or would be written over; options contradict each
-                other or the pictures.
+                other or the pictures. Of a folder all other pictures are scanned before.
             ExtraMissingError: the extra ``geo`` is not installed.
         """
         if picture.is_dir():
@@ -166,12 +166,21 @@ class Scanner:
             )
 
     def _folder(self, folder: Path, pictures: Mapping[str, Path], output: Path) -> dict[str, Any]:
-        summaries = []
+        summaries, faults = [], []
         for number, (stem, path) in enumerate(pictures.items()):
             one = replace(self, progress=partial(self._part, number, len(pictures)))
             one.progress(CLASSIFYING, 0, 1)
-            summaries.append(one._finished(path, output / stem))
+            try:
+                summaries.append(one._finished(path, output / stem))
+            except InputError as error:
+                faults.append(error.line())
             one.progress(CLASSIFYING, 1, 1)
+        if faults:
+            raise InputError(
+                f"{len(faults)} of {len(pictures)} pictures are not scanned",
+                value=f"{faults[0]}{', …' if len(faults) > 1 else ''}",
+                mend="correct or remove them and run the same command again; the others are kept",
+            )
         coverage = Coverage(
             sum(x["classified_pixels"] for x in summaries), sum(x["coverage"]["pixels"] for x in summaries)
         )

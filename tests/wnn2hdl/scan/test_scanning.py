@@ -361,3 +361,20 @@ def test_a_folder_is_one_step_that_never_falls_back(model_file: Path, tmp_path: 
     assert done == sorted(done)
     assert {total for _, _, total in told} == {done[-1]}
     assert any(1000 < share < 2000 for share in done), "a large picture's windows are told of"
+
+
+def test_a_damaged_picture_does_not_keep_others_of_a_folder_from_being_scanned(
+    scan: Scan, pixels: NDArray[np.uint8], counting: Any, tmp_path: Path
+) -> None:
+    chips, out, run = tmp_path / "chips", tmp_path / "out", counting()
+    chips.mkdir()
+    for name in "abc":
+        write_png(chips / f"{name}.png", pixels)
+    (chips / "a.png").write_bytes((chips / "a.png").read_bytes()[:2000])
+    with pytest.raises(InputError, match=r"1 of 3 pictures are not scanned: .*truncated: .*a\.png"):
+        scan(chips, out, run=run)
+    assert names(out) == {"b", "c"}
+    assert len(run.done) == 2
+    write_png(chips / "a.png", pixels)
+    assert len(scan(chips, out, run=run)["pictures"]) == 3
+    assert len(run.done) == 3
