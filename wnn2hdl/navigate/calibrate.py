@@ -94,11 +94,11 @@ class Calibration:
         Where a frame lies is told by its name's number among those of the calibration's frames; if it is not
         told, it may have been any.
         """
-        numbers = frame_numbers(self.frames) and frame_numbers(tuple(dict.fromkeys((*self.frames, frame))))
-        if numbers is None:
-            return tuple(dict.fromkeys(self.cameras))
         if frame in self.frames:
             return (self.cameras[self.frames.index(frame)],)
+        numbers = frame_numbers((*self.frames, frame))
+        if numbers is None:
+            return tuple(dict.fromkeys(self.cameras))
         after = bisect(numbers[:-1], numbers[-1])
         return tuple(dict.fromkeys(self.cameras[max(after - 1, 0) : after + 1]))
 
