@@ -8,7 +8,7 @@ from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import SAMPLE_IMAGES, SAMPLE_SIDE, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.pipeline.landscapes import IMAGES, KINDS, MASKS, PALETTE, write_landscapes
-from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.pipeline.training import Progress, reported
 from wnn2hdl.samples.flight import FULL_MAP, make_flight, write_flight
 
 FRAMES = 35
@@ -72,7 +72,6 @@ def _write_flight(output: Path, frames: int, shape: tuple[int, int], seed: int, 
     report("generating country", 0, 1)
     made = make_flight(seed, shape, frames=frames)
     report("generating country", 1, 1)
-    report("writing files", 0, frames + 3)
     # Besides the frames: map, poses and camera.
-    for done, _ in enumerate(write_flight(output, made), start=1):
-        report("writing files", done, frames + 3)
+    for _ in reported(write_flight(output, made), "writing files", frames + 3, report):
+        pass

@@ -24,11 +24,9 @@ from wnn2hdl.navigate.poses import Pose, require_located
 from wnn2hdl.navigate.recording import Recording
 from wnn2hdl.navigate.results import FlightResult, MethodResult, SearchKind, SearchResult
 from wnn2hdl.navigate.weightless import GSD_M, Sighting, WeightlessEdges, by_rule, learn
+from wnn2hdl.pipeline.training import Progress, reported
 
 T = TypeVar("T")
-
-Progress = Callable[[str, int, int], None]
-"""Told a step's name, how many of its parts are done, and how many there are."""
 
 COARSER = 2
 """Calibration matches on a grid this much coarser: it needs metres, not half metres."""
@@ -190,11 +188,8 @@ def _in_parallel(
     workers = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
-    progress(step, 0, len(poses))
     try:
-        for done, result in enumerate(workers.map(locate, poses), start=1):
-            progress(step, done, len(poses))
-            yield result
+        yield from reported(workers.map(locate, poses), step, len(poses), progress)
     finally:
         workers.shutdown(cancel_futures=True)
         cv2.setNumThreads(threads)

@@ -14,7 +14,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, bits_to_codes, codes_to_bits
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.pipeline.crossval import Trainer, cross_validate
-from wnn2hdl.pipeline.training import Progress, tracked
+from wnn2hdl.pipeline.training import Progress, reported
 from wnn2hdl.tables import care_set, pixel_table
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
@@ -113,12 +113,12 @@ def measure(
     """
     images = [
         colour_histogram(image, len(dataset.classes))
-        for image in tracked(dataset, "reading images", len(dataset), progress)
+        for image in reported(dataset, "reading images", len(dataset), progress)
     ]
     methods = [*_bit_selections(images, dataset.classes, seed, max_luts)]
     methods += _discriminators(images, dataset.classes, trials, seed, progress)
     points = []
-    for name, train in tracked(methods, "measuring candidates", len(methods), progress):
+    for name, train in reported(methods, "measuring candidates", len(methods), progress):
         accuracy = cross_validate(images, train)
         model = train(range(len(images)))
         network = map_luts(pixel_table(model)).network
@@ -154,7 +154,7 @@ def _discriminators(
     encoder = high_bits(BITS_PER_CHANNEL)
     histograms = np.stack([code_histogram(image, encoder) for image in images])
     ranked = []
-    for trial in tracked(range(trials), "drawing mappings", trials, progress):
+    for trial in reported(range(trials), "drawing mappings", trials, progress):
         train = partial(train_discriminators, histograms, encoder, classes, seed + trial)
         if not saturates(train(range(len(images)))):
             ranked.append((-cross_validate(images, train), trial, train))

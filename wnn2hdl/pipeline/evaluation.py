@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import LutNetwork, bits_to_codes
-from wnn2hdl.pipeline.training import Progress, tracked
+from wnn2hdl.pipeline.training import Progress, reported
 from wnn2hdl.squares import vote
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def evaluate(classifier: "PictureClassifier", dataset: Dataset, progress: Progre
     classes = len(dataset.classes)
     confusion = np.zeros((len(dataset), classes, classes), dtype=np.int64)
     covered = np.zeros(len(dataset), dtype=np.int64)
-    for position, image in enumerate(tracked(dataset, "evaluating images", len(dataset), progress)):
+    for position, image in enumerate(reported(dataset, "evaluating images", len(dataset), progress)):
         picture, labels = _pictures(image, classifier.halo)
         answers, known = classifier.answer(picture)
         cells = labels.astype(np.int64) * classes + answers

@@ -11,7 +11,7 @@ from wnn2hdl.edges import canny, filter_agreement, grey, learned, learned_under_
 from wnn2hdl.edges.compare import Agreement
 from wnn2hdl.images import list_images, read_rgb
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, PictureEncoder, WisardModel
-from wnn2hdl.pipeline.training import Progress, pixel_encoder, tracked
+from wnn2hdl.pipeline.training import Progress, pixel_encoder, reported
 from wnn2hdl.tables import code_histogram, window_histogram
 from wnn2hdl.wisard import PixelClassifier
 
@@ -82,4 +82,4 @@ def _edge_pairs(
 
 def _pictures(folder: Path, progress: Progress) -> Iterator[NDArray[np.uint8]]:
     paths = list_images(folder)
-    yield from map(read_rgb, tracked(paths, f"reading {folder.name}", len(paths), progress))
+    yield from map(read_rgb, reported(paths, f"reading {folder.name}", len(paths), progress))

@@ -6,7 +6,7 @@ import numpy as np
 
 from wnn2hdl.images import Palette, write_png
 from wnn2hdl.ir.files import make_folder, write_json
-from wnn2hdl.pipeline.training import Progress, tracked
+from wnn2hdl.pipeline.training import Progress, reported
 from wnn2hdl.samples import CLASSES, landscape
 
 IMAGES, MASKS, KINDS, PALETTE = "images", "masks", "kinds", "palette.json"
@@ -32,7 +32,7 @@ def write_landscapes(folder: Path, count: int, side: int, *, seed: int, progress
     palette = Palette.of(CLASSES)
     for name in (IMAGES, MASKS, KINDS):
         make_folder(folder / name)
-    for i in tracked(range(count), "landscapes", count, progress):
+    for i in reported(range(count), "landscapes", count, progress):
         scene = landscape(side, side, seed + i)
         name = f"landscape-{seed + i:05d}.png"
         write_png(folder / IMAGES / name, scene.image)

@@ -7,7 +7,7 @@ from wnn2hdl.bitselect import LEAST_SHARE, LUTS, main_drift, select_neighbourhoo
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.pipeline.training import Progress, tracked
+from wnn2hdl.pipeline.training import Progress, reported
 
 WINDOWS = 8000
 """Windows drawn from each image, wherever they lie wholly inside; more changed little."""
@@ -36,7 +36,7 @@ def train_neighbourhood(
             mend="allow more, or train without --neighbourhood",
         )
     windows, labels, means = [], [], []
-    for position, image in enumerate(tracked(dataset, "reading images", len(dataset), progress)):
+    for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
         drawn = _draw(image, size, np.random.default_rng([seed, position]))
         windows.append(drawn[0])
         labels.append(drawn[1])

@@ -14,7 +14,7 @@ from wnn2hdl.images import by_stem, read_rgb
 from wnn2hdl.pipeline.classifiers import PictureClassifier
 from wnn2hdl.pipeline.evaluation import with_halo
 from wnn2hdl.pipeline.measures import CONFIDENCE, RESAMPLES
-from wnn2hdl.pipeline.training import Progress, tracked
+from wnn2hdl.pipeline.training import Progress, reported
 
 COLUMNS = ("image_name", "tags")
 
@@ -90,7 +90,7 @@ def evaluate_tagged(
     files = by_stem(chips)
     counted = cleared_classes(classifier.classes)
     shares = {}
-    for name in tracked(cleared, "classifying chips", len(cleared), progress):
+    for name in reported(cleared, "classifying chips", len(cleared), progress):
         if name not in files:
             raise InputError(
                 f"no picture of this name in {chips}", value=name, mend="correct the file of tags"

@@ -18,7 +18,7 @@ Progress = Callable[[str, int, int], None]
 Item = TypeVar("Item")
 
 
-def tracked(items: Iterable[Item], step: str, total: int, progress: Progress) -> Iterator[Item]:
+def reported(items: Iterable[Item], step: str, total: int, progress: Progress) -> Iterator[Item]:
     """Items one by one; a report is made before the first and when each is done with.
 
     Args:
@@ -50,7 +50,7 @@ def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -
         )
     shape = (len(dataset.classes), 1 << encoder.width)
     histograms = np.zeros((len(dataset), *shape), dtype=np.int64)
-    for position, image in enumerate(tracked(dataset, "reading images", len(dataset), progress)):
+    for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
         histograms[position] = _histogram(image, encoder, shape)
     for name, pixels in zip(dataset.classes, histograms.sum(axis=(0, 2)), strict=True):
         if pixels == 0:
@@ -119,7 +119,7 @@ def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> Wi
         InputError: an image cannot be read.
     """
     seen = np.zeros(1 << COLOURS.width, dtype=np.bool_)
-    for image in tracked(dataset, "noting colours", len(dataset), progress):
+    for image in reported(dataset, "noting colours", len(dataset), progress):
         seen[COLOURS.codes(image.pixels)] = True
     return replace(model, colours=np.flatnonzero(seen))
 

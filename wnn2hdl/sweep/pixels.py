@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import ColourHistogram, Dataset, colour_histogram, split
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect
-from wnn2hdl.pipeline.training import Progress, tracked
+from wnn2hdl.pipeline.training import Progress, reported
 
 TRAINING_PIXELS = 20_000
 """Pixels drawn for training unless told otherwise."""
@@ -90,7 +90,7 @@ def draw(dataset: Dataset, *, pixels: int, seed: int, progress: Progress) -> Pix
     trained, held = split(dataset.names, len(dataset) // 2)
     histograms = {
         image.name: colour_histogram(image, len(dataset.classes))
-        for image in tracked(dataset, "reading images", len(dataset), progress)
+        for image in reported(dataset, "reading images", len(dataset), progress)
     }
     for side, names in (("training", trained), ("held-out", held)):
         totals = sum(histograms[name].counts.sum(axis=1) for name in names)

@@ -9,7 +9,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import COLOURS, Thermometer, WisardModel
 from wnn2hdl.pipeline.classifiers import model_classifier
 from wnn2hdl.pipeline.evaluation import evaluate
-from wnn2hdl.pipeline.training import image_histograms, pixel_encoder, tracked, train, with_colours
+from wnn2hdl.pipeline.training import image_histograms, pixel_encoder, reported, train, with_colours
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -95,7 +95,7 @@ def test_a_stage_is_told_of_when_it_starts_and_after_each_item() -> None:
     def report(step: str, done: int, total: int) -> None:
         told.append((step, done, total))
 
-    for item in tracked("ab", "reading", 2, report):
+    for item in reported("ab", "reading", 2, report):
         report(item, -1, -1)
     assert told == [
         ("reading", 0, 2),
@@ -104,5 +104,5 @@ def test_a_stage_is_told_of_when_it_starts_and_after_each_item() -> None:
         ("b", -1, -1),
         ("reading", 2, 2),
     ]
-    assert list(tracked((), "reading", 0, report)) == []
+    assert list(reported((), "reading", 0, report)) == []
     assert len(told) == 5
