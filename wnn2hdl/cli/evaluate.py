@@ -91,10 +91,8 @@ def evaluate_command(
       wnn2hdl evaluate build/mine --images images --masks masks --square 20 --json
       wnn2hdl evaluate model.json --chips chips --tags labels.csv
     """
-    parts = _parts(model)
-    head: dict[str, Any] = {"classifier": str(model)}
-    if model.is_dir():
-        head["mode"] = read_report(model)["mode"]
+    parts, mode = _parts(model)
+    head = {"classifier": str(model), **mode}
     with progress() as report:
         if chips is None and tags is None:
             first = next(iter(parts.values()))
@@ -114,19 +112,20 @@ def evaluate_command(
     emit({**head, **data, "bootstrap": bootstrap}, text, as_json=as_json)
 
 
-def _parts(model: Path) -> dict[str, PictureClassifier]:
-    """What is to be measured, the most important first: of a build its circuit, then its model."""
-    if model.is_dir():
-        require_build(model)
-        target = read_report(model)["target"]
-        if target in UNCLASSIFIED:
-            raise InputError(
-                "the build holds no classifier, so there is nothing to measure",
-                value=f"{model} (target {target})",
-                mend="give its model.json, or a build of another target",
-            )
-        return {"circuit": open_classifier(model), "model": open_classifier(model / MODEL_FILE)}
-    return {"model": open_classifier(model)}
+def _parts(model: Path) -> tuple[dict[str, PictureClassifier], dict[str, str]]:
+    """What is to be measured: a model; or of a build its circuit, then its model, and the mode."""
+    if not model.is_dir():
+        return {"model": open_classifier(model)}, {}
+    require_build(model)
+    report = read_report(model)
+    if report["target"] in UNCLASSIFIED:
+        raise InputError(
+            "the build holds no classifier, so there is nothing to measure",
+            value=f"{model} (target {report['target']})",
+            mend="give its model.json, or a build of another target",
+        )
+    parts = {"circuit": open_classifier(model), "model": open_classifier(model / MODEL_FILE)}
+    return parts, {"mode": report["mode"]}
 
 
 def _dataset(

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 REFERENCE_WINDOW_M = 95.0
 """The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre a pixel."""
 
-
 LEAST_FRAMES = 4
 """With 3 that are all right, a fix still cannot be told to be right in 95 % of cases."""
 

@@ -34,7 +34,7 @@ def app() -> None:
 
     `wnn2hdl doctor` tells which tools are here, `wnn2hdl COMMAND --help` what a command takes.
 
-    
+    \b
     For completion by the Tab key in bash (zsh and fish likewise), put into ~/.bashrc:
       eval "$(_WNN2HDL_COMPLETE=bash_source wnn2hdl)"
     """

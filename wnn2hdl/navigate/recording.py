@@ -59,7 +59,7 @@ class Recording:
         known = camera if isinstance(camera, Camera) else Camera.of_focal(camera, width, height)
         for file, (rows, columns) in sizes.items():
             known.require_shape(columns, rows, file.name)
-        scaled = known.scaled(width, height)
+        scaled = known.resized(width, height)
         return cls(map_file.name, world, scaled, tuple(files), lambda pose: read_rgb(files[pose]))
 
     @classmethod

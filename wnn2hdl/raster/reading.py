@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,6 @@ class RasterReader:
         note: what had to be assumed about its bands and pages.
         files: what GDAL reads for it and its mask: the files themselves, those beside them, a mosaic's parts.
         masked: whether some of it may be invalid.
-        upright: whether viewers show it as it is stored; windows are not turned.
         plain: whether its samples are opaque levels, read as they stand: then `wnn2hdl.images.read_rgb` reads
             it as well, if it is small.
 
@@ -95,10 +95,23 @@ class RasterReader:
         self.masked = self._own_mask or reading.mask is not None
         as_it_stands = self._palette is None and not (reading.bands or reading.scale)
         self.plain = as_it_stands and not flags & {"alpha", "nodata"}
-        self._orientation = _orientation(path)
-        self.upright = self._orientation == _UPRIGHT
         if reading.mask is not None:
             self._check_mask(reading.mask)
+
+    @cached_property
+    def _orientation(self) -> int:
+        """How the picture is to be turned, as EXIF numbers it; `_UPRIGHT` also where Pillow cannot tell."""
+        try:
+            # Pillow warns of large pictures and refuses larger ones; only the head is read here.
+            with warnings.catch_warnings(action="ignore"), Image.open(self._path) as picture:
+                return int(picture.getexif().get(_ORIENTATION_TAG, _UPRIGHT))
+        except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
+            return _UPRIGHT
+
+    @property
+    def upright(self) -> bool:
+        """Whether viewers show it as it is stored; windows are not turned."""
+        return self._orientation == _UPRIGHT
 
     def require_upright(self) -> None:
         """Raise InputError if the file says that viewers must turn the picture."""
@@ -211,16 +224,6 @@ def _bands(where: dict[str, Any], count: int) -> dict[str, Any]:
 
 def _both(one: NDArray[np.bool_] | None, other: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return other if one is None else one & other
-
-
-def _orientation(path: Path) -> int:
-    """How the picture is to be turned, as EXIF numbers it; `_UPRIGHT` also where Pillow cannot tell."""
-    try:
-        # Pillow warns of large pictures and refuses larger ones; only the head is read here.
-        with warnings.catch_warnings(action="ignore"), Image.open(path) as picture:
-            return int(picture.getexif().get(_ORIENTATION_TAG, _UPRIGHT))
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
-        return _UPRIGHT
 
 
 def _pages(source: Any) -> str:

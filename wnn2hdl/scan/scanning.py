@@ -4,7 +4,7 @@ import hashlib
 import math
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
@@ -19,7 +19,7 @@ from wnn2hdl.images import by_stem
 from wnn2hdl.ir.files import made_folder, read_json, write_json, write_text
 from wnn2hdl.pipeline.classifiers import PictureClassifier, open_classifier
 from wnn2hdl.pipeline.training import Progress
-from wnn2hdl.raster import NODATA, RasterReader, Reading, add_overviews, same_grid
+from wnn2hdl.raster import NODATA, RasterReader, add_overviews, same_grid
 from wnn2hdl.scan.areas import SQUARE_METRES, class_areas
 from wnn2hdl.scan.change import write_change
 from wnn2hdl.scan.cleanup import sieve_in_place
@@ -123,33 +123,31 @@ class Scanner:
                 return self._folder(picture, pictures, output)
         reading = replace(self.options.reading, mask=before_mask)
         earlier = replace(self, options=replace(self.options, reading=reading))
-        files, limit = self._check(picture)
+        after = RasterReader(picture, self.options.reading)
+        # That pixels have no area is told before anything is written.
+        files, limit = after.files, self._minimum_pixels(after)
         if before is not None:
-            files += earlier._check_earlier(before, picture, self.options.reading)
+            files += earlier._check_earlier(before, picture, after)
         require_apart([self.model, *files], output)
         with made_folder(output):
+            identity = self._identity(after.files)
             if before is None:
-                return self._finish(output, self._picture(picture, output))
+                return self._finish(output, self._picture(picture, output, identity))
             first = earlier._finished(before, output / BEFORE)
-            summary = self._picture(picture, output)
+            summary = self._picture(picture, output, identity)
             summary["warnings"] += [f"{before}: {warning}" for warning in first["warnings"]]
             summary |= {"before": str(before), "change": self._change(output, limit)}
             return self._finish(output, summary)
 
-    def _check(self, picture: Path) -> tuple[tuple[Path, ...], int | None]:
-        """Refuse what cannot be scanned before anything is written; all files, and the least pixels."""
-        reader = RasterReader(picture, self.options.reading)
-        return reader.files, self._minimum_pixels(reader)
-
-    def _check_earlier(self, before: Path, picture: Path, reading: Reading) -> tuple[Path, ...]:
-        """The same for the earlier date's picture, beside the later one and how that is read."""
+    def _check_earlier(self, before: Path, picture: Path, after: RasterReader) -> tuple[Path, ...]:
+        """Refuse a picture of an earlier date that does not fit the later one; all its files."""
         if self.options.vector == "none":
             raise InputError(
                 "the changes since --before are polygons",
                 value="--vector none",
                 mend="choose geojson or gpkg",
             )
-        earlier, after = RasterReader(before, self.options.reading), RasterReader(picture, reading)
+        earlier = RasterReader(before, self.options.reading)
         sizes = [(x.height, x.width) for x in (earlier, after)]
         if sizes[0] != sizes[1] or not same_grid(earlier.georeference, after.georeference, *sizes[0]):
             raise InputError(
@@ -214,15 +212,15 @@ class Scanner:
             known = read_json(output / SUMMARY_FILE, "a summary")
         except ModelFileError:
             known = {}
-        if known.get("identity") == self._identity(picture) and (output / CLASSES_FILE).is_file():
+        identity = self._identity(RasterReader(picture, self.options.reading).files)
+        if known.get("identity") == identity and (output / CLASSES_FILE).is_file():
             return known
         with made_folder(output):
-            return self._finish(output, self._picture(picture, output))
+            return self._finish(output, self._picture(picture, output, identity))
 
-    def _picture(self, picture: Path, output: Path) -> dict[str, Any]:
+    def _picture(self, picture: Path, output: Path, identity: dict[str, Any]) -> dict[str, Any]:
         """Scan one picture; all files but the summary."""
         started = time.perf_counter()
-        identity = self._identity(picture)
         task = Task(picture.absolute(), self.options.reading, self.classifier, self.options.method)
         source = task.open()
         limit = self._minimum_pixels(source)
@@ -297,9 +295,8 @@ class Scanner:
         write_json(output / SUMMARY_FILE, summary)
         return summary
 
-    def _identity(self, picture: Path) -> dict[str, Any]:
-        """What decides the result, as far as it can be told without reading all of the picture."""
-        files = RasterReader(picture, self.options.reading).files
+    def _identity(self, files: Iterable[Path]) -> dict[str, Any]:
+        """What decides the result, as far as it can be told without reading all of the picture's files."""
         # A mosaic's parts may lie where only GDAL can look.
         states = {file.absolute(): file.stat() for file in files if file.is_file()}
         return {
