@@ -18,18 +18,18 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
-from wnn2hdl.bitselect import MOST_LUTS, SIZES, look_up_table, select_bits
+from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.dataset import CLASSES, ColourHistogram, Dataset, colour_histogram, folds, from_masks
 from wnn2hdl.encode import high_bits
+from wnn2hdl.evaluation.accuracy import evaluate
+from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.ir import BitSelect, WisardModel
+from wnn2hdl.lower.table import pixel_table
 from wnn2hdl.minimise import map_luts
-from wnn2hdl.pipeline.budget import code_histogram, saturates, train_discriminators
-from wnn2hdl.pipeline.classifiers import model_classifier
-from wnn2hdl.pipeline.crossval import FOLDS, Trainer, cross_validate
-from wnn2hdl.pipeline.evaluation import evaluate
-from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
-from wnn2hdl.pipeline.planning import CompileOptions, plan
-from wnn2hdl.tables import pixel_table
+from wnn2hdl.training.bitselect import MOST_LUTS, SIZES, look_up_table, select_bits
+from wnn2hdl.training.budget import code_histogram, saturates, train_discriminators
+from wnn2hdl.training.crossval import FOLDS, Trainer, cross_validate
+from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 RED = BitSelect(tuple(f"R{bit}" for bit in range(8)))
 

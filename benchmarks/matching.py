@@ -19,9 +19,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.apps.navigation.matching import MapIndex, Match, Score, Window
 from wnn2hdl.edges import canny, grey
 from wnn2hdl.images import read_rgb
-from wnn2hdl.navigate.matching import MapIndex, Match, Score, Window
 from wnn2hdl.samples import landscape
 
 MAP = 9872, 10386

@@ -17,16 +17,16 @@ from numpy.typing import NDArray
 from PIL import Image
 from sklearn.metrics import cohen_kappa_score
 
+from wnn2hdl.apps.deforestation.overlay import overlay, overlay_palette
 from wnn2hdl.dataset import CLASSES, from_regions
 from wnn2hdl.encode import high_bits
+from wnn2hdl.evaluation.classifiers import model_classifier
+from wnn2hdl.evaluation.squares import vote
+from wnn2hdl.evaluation.tagged import evaluate_tagged
+from wnn2hdl.files import make_folder
 from wnn2hdl.images import read_rgb, write_png
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.ir.files import make_folder
-from wnn2hdl.pipeline.classifiers import model_classifier
-from wnn2hdl.pipeline.tagged import evaluate_tagged
-from wnn2hdl.pipeline.training import image_histograms
-from wnn2hdl.scan.overlay import overlay, overlay_palette
-from wnn2hdl.squares import vote
+from wnn2hdl.training.discriminators import image_histograms
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
 RAMS, ADDRESS_BITS = 10, 4

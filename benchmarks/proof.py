@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from wnn2hdl.pipeline.circuits import PARTS, Circuits, component, port_arrays
-from wnn2hdl.pipeline.design import Design
-from wnn2hdl.pipeline.verification import open_build
+from wnn2hdl.build.circuits import PARTS, Circuits, component, port_arrays
+from wnn2hdl.build.design import Design
+from wnn2hdl.build.verification import open_build
 from wnn2hdl.synth import synthesise
 from wnn2hdl.verify.compiled import CompiledSimulator, run_compiled
 from wnn2hdl.verify.mutation import check_proof, make_mutants

@@ -20,16 +20,16 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
-from wnn2hdl.bitselect import LUTS
 from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, folds, from_masks
 from wnn2hdl.encode import high_bits
-from wnn2hdl.pipeline.budget import train_under_budget
-from wnn2hdl.pipeline.classifiers import PictureClassifier, model_classifier
-from wnn2hdl.pipeline.crossval import FOLDS
-from wnn2hdl.pipeline.evaluation import SquareVote, evaluate, majority_labels
-from wnn2hdl.pipeline.measures import ious
-from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
-from wnn2hdl.pipeline.training import train
+from wnn2hdl.evaluation.accuracy import SquareVote, evaluate, majority_labels
+from wnn2hdl.evaluation.classifiers import PictureClassifier, model_classifier
+from wnn2hdl.evaluation.measures import ious
+from wnn2hdl.training.bitselect import LUTS
+from wnn2hdl.training.budget import train_under_budget
+from wnn2hdl.training.crossval import FOLDS
+from wnn2hdl.training.discriminators import train
+from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 SIDE, SHARE = 20, 0.5
 TREES = 100

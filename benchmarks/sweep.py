@@ -25,12 +25,12 @@ import numpy as np
 
 from hdl_templates.lookup import Style
 from wnn2hdl import elaborate
+from wnn2hdl.apps.sweep import PixelSets, Plan, Recipe, Trial, draw, grid
+from wnn2hdl.apps.sweep.trial import table_and_network
 from wnn2hdl.dataset import from_masks, from_samples
 from wnn2hdl.emit import verilog
 from wnn2hdl.encode import high_bits
 from wnn2hdl.ir import LutNetwork, TruthTable
-from wnn2hdl.sweep import PixelSets, Plan, Recipe, Trial, draw, grid
-from wnn2hdl.sweep.trial import table_and_network
 from wnn2hdl.synth import Job, synthesise_all
 
 SIDE = 256

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.encode import parse_bits
+from wnn2hdl.lower.table import pixel_table
 from wnn2hdl.minimise import espresso, map_luts
-from wnn2hdl.pipeline.compile import compile_model
-from wnn2hdl.pipeline.planning import CompileOptions
 from wnn2hdl.samples import landscape
-from wnn2hdl.tables import pixel_table
 from wnn2hdl.wisard import PixelClassifier, draw_mapping, train_histogram
 
 

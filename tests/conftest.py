@@ -47,16 +47,16 @@ def write_build() -> Callable[..., Path]:
 
     Model, design and networks are real; changes are those of the fields of `BuildReport`.
     """
+    from wnn2hdl.build.design import Design, tables
+    from wnn2hdl.build.reporting import model_figures
     from wnn2hdl.dataset import from_samples
     from wnn2hdl.edges import boundary
     from wnn2hdl.emit import write_manifest
     from wnn2hdl.encode import parse_bits
-    from wnn2hdl.ir.files import write_json
+    from wnn2hdl.files import write_json
     from wnn2hdl.minimise import map_luts
-    from wnn2hdl.pipeline.design import Design, tables
-    from wnn2hdl.pipeline.reporting import model_figures
-    from wnn2hdl.pipeline.training import train
     from wnn2hdl.report import BuildReport, Care, PartFigures, Parts, Proof, report_dict
+    from wnn2hdl.training.discriminators import train
     from wnn2hdl.verify.specification import Specification
 
     model = train(

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from wnn2hdl.build.design import Design
+from wnn2hdl.build.reporting import open_entries, write_page
 from wnn2hdl.ir import LutNetwork
-from wnn2hdl.pipeline.design import Design
-from wnn2hdl.pipeline.reporting import open_entries, write_page
 from wnn2hdl.report import Care, ModelFigures, index_page
 from wnn2hdl.report.logic import expression, grid
 from wnn2hdl.report.page import form

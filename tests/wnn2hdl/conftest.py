@@ -1,19 +1,19 @@
-"""A small model and builds of it, shared by tests of the pipeline and of its commands."""
+"""A small model and builds of it, shared by tests of builds and of its commands."""
 
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.encode import parse_bits
 from wnn2hdl.images import write_png
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.pipeline.compile import compile_model
-from wnn2hdl.pipeline.landscapes import IMAGES, MASKS, write_landscapes
-from wnn2hdl.pipeline.planning import CompileOptions
-from wnn2hdl.pipeline.training import train
 from wnn2hdl.samples import landscape
+from wnn2hdl.samples.landscapes import IMAGES, MASKS, write_landscapes
+from wnn2hdl.training.discriminators import train
 
 
 def silent(step: str, done: int, total: int) -> None:

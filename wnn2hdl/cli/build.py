@@ -5,14 +5,14 @@ from typing import Any, get_args
 
 import click
 
+from wnn2hdl.build.compile import compile_model, require_luts
+from wnn2hdl.build.design import Mode, Style, Target
+from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, palette_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.pipeline.compile import compile_model, require_luts
-from wnn2hdl.pipeline.design import Mode, Style, Target
-from wnn2hdl.pipeline.planning import CompileOptions
 
 
 @app.command("compile")

@@ -7,15 +7,15 @@ from typing import get_args
 import click
 import numpy as np
 
+from wnn2hdl.build.checking import synthesise_parts
+from wnn2hdl.build.playback import SimulatorName, play
+from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.errors import CheckError
+from wnn2hdl.files import make_folder
 from wnn2hdl.images import write_png
-from wnn2hdl.ir.files import make_folder
-from wnn2hdl.pipeline.checking import synthesise_parts
-from wnn2hdl.pipeline.playback import SimulatorName, play
-from wnn2hdl.pipeline.verification import open_build, verify_build
 
 build_argument = click.argument("build", type=folder)
 

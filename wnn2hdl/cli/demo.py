@@ -26,8 +26,8 @@ def demo_command(output: Path, seed: int, as_json: bool) -> None:
       wnn2hdl demo --seed 1 -o build/another
     """
     # Every application; other commands need not wait for them.
-    from wnn2hdl.demo import REFERENCE, SMALLEST, run_demo
-    from wnn2hdl.navigate.summary import summary
+    from wnn2hdl.apps.demo import REFERENCE, SMALLEST, run_demo
+    from wnn2hdl.apps.navigation.summary import summary
 
     with progress() as report:
         demo = run_demo(output, seed, report)

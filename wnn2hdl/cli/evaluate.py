@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from wnn2hdl.build.classifier import open_classifier
+from wnn2hdl.build.design import MODEL_FILE
+from wnn2hdl.build.folder import require_build
+from wnn2hdl.build.reporting import read_report
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     SAMPLE_IMAGES,
@@ -26,11 +30,9 @@ from wnn2hdl.cli.options import (
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.dataset import Dataset, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.pipeline.classifiers import PictureClassifier, open_classifier
-from wnn2hdl.pipeline.design import MODEL_FILE
-from wnn2hdl.pipeline.evaluation import Evaluation, SquareVote, evaluate, majority_labels
-from wnn2hdl.pipeline.folder import require_build
-from wnn2hdl.pipeline.measures import (
+from wnn2hdl.evaluation.accuracy import Evaluation, SquareVote, evaluate, majority_labels
+from wnn2hdl.evaluation.classifiers import PictureClassifier
+from wnn2hdl.evaluation.measures import (
     CONFIDENCE,
     METHOD,
     accuracy,
@@ -40,12 +42,11 @@ from wnn2hdl.pipeline.measures import (
     kappa,
     mean_iou,
 )
-from wnn2hdl.pipeline.reporting import read_report
-from wnn2hdl.pipeline.tagged import RULE, evaluate_tagged
-from wnn2hdl.pipeline.training import Progress
+from wnn2hdl.evaluation.squares import MAX_SIDE
+from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
+from wnn2hdl.progress import Progress
 from wnn2hdl.report import UNCLASSIFIED
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
-from wnn2hdl.squares import MAX_SIDE
 
 MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 

@@ -24,13 +24,14 @@ from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
+from wnn2hdl.files import make_folder
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.ir.files import make_folder
 from wnn2hdl.ir.model import COMMAND
-from wnn2hdl.pipeline.budget import Point, measure, pareto_front, train_under_budget
-from wnn2hdl.pipeline.neighbourhood import train_neighbourhood
-from wnn2hdl.pipeline.training import Progress, train, with_colours
+from wnn2hdl.progress import Progress
 from wnn2hdl.report.plots import plot_pareto
+from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
+from wnn2hdl.training.discriminators import train, with_colours
+from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 
 @dataclass(frozen=True)

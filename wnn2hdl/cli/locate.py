@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
+from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.files import made_folder
-from wnn2hdl.navigate.camera import Camera
-from wnn2hdl.navigate.poses import Pose, frame_files, read_poses
-from wnn2hdl.navigate.recording import Recording, split
+from wnn2hdl.files import made_folder
 
 if TYPE_CHECKING:
-    from wnn2hdl.navigate.results import SearchKind
+    from wnn2hdl.apps.navigation.results import SearchKind
 
 REFERENCE_WINDOW_M = 95.0
 """The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre a pixel."""
@@ -130,9 +130,9 @@ def locate_command(
         --calibrate-frames KNOWN --search map
     """
     # Not at the top: they load what other commands need not wait for.
-    from wnn2hdl.navigate.flight import run_flight
-    from wnn2hdl.navigate.output import flight_markdown
-    from wnn2hdl.navigate.summary import summary, write_run
+    from wnn2hdl.apps.navigation.flight import run_flight
+    from wnn2hdl.apps.navigation.output import flight_markdown
+    from wnn2hdl.apps.navigation.summary import summary, write_run
 
     given = {"--map": map_file, "--frames": frames, "--poses": poses_file}
     searches: dict[SearchKind, float | None] = {}

@@ -7,14 +7,14 @@ from typing import Literal, get_args
 
 import click
 
+from wnn2hdl.build.folder import REPORT_HTML, is_build
+from wnn2hdl.build.reporting import open_entries
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file
 from wnn2hdl.cli.output import emit, json_option
 from wnn2hdl.errors import CheckError, InputError
-from wnn2hdl.ir.files import make_folder, write_text
-from wnn2hdl.pipeline.folder import REPORT_HTML, is_build
-from wnn2hdl.pipeline.reporting import open_entries
+from wnn2hdl.files import make_folder, write_text
 from wnn2hdl.report import (
     Check,
     Entry,

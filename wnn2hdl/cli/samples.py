@@ -7,9 +7,9 @@ import click
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import SAMPLE_IMAGES, SAMPLE_SIDE, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.pipeline.landscapes import IMAGES, KINDS, MASKS, PALETTE, write_landscapes
-from wnn2hdl.pipeline.training import Progress, reported
+from wnn2hdl.progress import Progress, reported
 from wnn2hdl.samples.flight import FULL_MAP, make_flight, write_flight
+from wnn2hdl.samples.landscapes import IMAGES, KINDS, MASKS, PALETTE, write_landscapes
 
 FRAMES = 35
 """As many as the reference design's flight had."""

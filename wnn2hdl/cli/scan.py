@@ -7,18 +7,18 @@ from typing import Any, get_args
 
 import click
 
+from wnn2hdl.apps.deforestation.classify import Method
+from wnn2hdl.apps.deforestation.distributed import run_distributed
+from wnn2hdl.apps.deforestation.local import run_locally
+from wnn2hdl.apps.deforestation.options import ScanOptions, Vector
+from wnn2hdl.apps.deforestation.scanning import Scanner
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option, share_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.raster import Reading
-from wnn2hdl.scan.classify import Method
-from wnn2hdl.scan.distributed import run_distributed
-from wnn2hdl.scan.local import run_locally
-from wnn2hdl.scan.options import ScanOptions, Vector
-from wnn2hdl.scan.scanning import Scanner
-from wnn2hdl.squares import MAX_SIDE
 
 
 class BandsType(click.ParamType[tuple[int, ...]]):

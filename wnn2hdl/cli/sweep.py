@@ -8,19 +8,7 @@ from typing import Any
 
 import click
 
-from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import (
-    BleachingType,
-    folder,
-    images_option,
-    labelled,
-    masks_option,
-    seed_option,
-)
-from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.encode import high_bits, parse_bits
-from wnn2hdl.errors import InputError
-from wnn2hdl.sweep import (
+from wnn2hdl.apps.sweep import (
     TRAINING_PIXELS,
     Outcome,
     PixelSets,
@@ -37,6 +25,18 @@ from wnn2hdl.sweep import (
     run_trial,
     seen_colours,
 )
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import (
+    BleachingType,
+    folder,
+    images_option,
+    labelled,
+    masks_option,
+    seed_option,
+)
+from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.encode import high_bits, parse_bits
+from wnn2hdl.errors import InputError
 
 DEFAULT_FOLDER = Path("build/sweep")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.errors import InputError, ModelFileError
-from wnn2hdl.ir.files import read_json, write_json
+from wnn2hdl.files import read_json, write_json
 
 MANIFEST_NAME = "manifest.json"
 FORMAT = "wnn2hdl-manifest"

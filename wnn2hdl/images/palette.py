@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PIL import ImageColor
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.files import read_json
+from wnn2hdl.files import read_json
 
 CLASS_COLOURS = {
     "forest": (22, 92, 44),

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from wnn2hdl.ir.files import write_bytes
+from wnn2hdl.files import write_bytes
 
 
 def write_png(path: Path, array: NDArray[np.uint8] | NDArray[np.bool_]) -> None:

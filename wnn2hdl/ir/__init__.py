@@ -13,7 +13,7 @@ from wnn2hdl.ir.encoder import (
     Tap,
     Thermometer,
 )
-from wnn2hdl.ir.model import WisardModel
+from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
 from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux
 from wnn2hdl.ir.tables import Cover, Cube, TruthTable
 from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
@@ -45,5 +45,7 @@ __all__ = [
     "WisardModel",
     "bits_to_codes",
     "codes_to_bits",
+    "picture_encoder",
+    "pixel_encoder",
     "window_codes",
 ]

@@ -12,10 +12,10 @@ import jsonschema
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wnn2hdl.errors import ModelFileError
+from wnn2hdl.errors import InputError, ModelFileError
+from wnn2hdl.files import read_json, write_json
 from wnn2hdl.ir.codes import bits_to_codes, codes_to_bits
-from wnn2hdl.ir.encoder import Encoder, encoder_from_json
-from wnn2hdl.ir.files import read_json, write_json
+from wnn2hdl.ir.encoder import BitSelect, Encoder, PictureEncoder, encoder_from_json
 
 FORMAT = "wnn2hdl-model"
 VERSION = 1
@@ -176,6 +176,37 @@ class WisardModel:
             training=data["training"],
             colours=np.array(data["colours"], dtype=np.int64) if "colours" in data else None,
         )
+
+
+def pixel_encoder(model: WisardModel) -> BitSelect:
+    """The encoder of a model of single pixels.
+
+    Raises:
+        InputError: the model reads features, or looks at a pixel's neighbours.
+    """
+    encoder = picture_encoder(model)
+    if not isinstance(encoder, BitSelect):
+        raise InputError(
+            "the model looks at more than one pixel",
+            value=f"at {encoder.size}x{encoder.size}",
+            mend="use one that was trained without --neighbourhood",
+        )
+    return encoder
+
+
+def picture_encoder(model: WisardModel) -> PictureEncoder:
+    """The encoder of a model of pixels or of neighbourhoods.
+
+    Raises:
+        InputError: the model reads features, not the bits of pixels.
+    """
+    if not isinstance(model.encoder, PictureEncoder):
+        raise InputError(
+            "the model does not read pixels",
+            value=f"its encoder is of kind {model.encoder.kind}",
+            mend="use one that was trained on images",
+        )
+    return model.encoder
 
 
 @cache

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.errors import CheckError
-from wnn2hdl.ir.files import read_json, write_json
+from wnn2hdl.files import read_json, write_json
 from wnn2hdl.report.schemas import check
 
 FORMAT = "wnn2hdl-baseline"

@@ -4,7 +4,7 @@ import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from wnn2hdl.ir.files import write_bytes
+from wnn2hdl.files import write_bytes
 
 
 def plot_pareto(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from wnn2hdl.errors import InputError, extra_needed
-from wnn2hdl.ir.files import make_folder, write_bytes, write_text
+from wnn2hdl.files import make_folder, write_bytes, write_text
 from wnn2hdl.samples.country import GROUND_SAMPLE_DISTANCE_M, paint
 from wnn2hdl.samples.georeference import EPSG, NORTH, WEST, Grid
 from wnn2hdl.samples.plane import Window

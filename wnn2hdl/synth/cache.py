@@ -11,7 +11,7 @@ from typing import Any
 import platformdirs
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.files import make_folder, write_text
+from wnn2hdl.files import make_folder, write_text
 
 FOLDER = "WNN2HDL_CACHE"
 """The environment variable that names the cache's folder; by default it is where this system keeps caches."""

@@ -1,4 +1,4 @@
-"""`compile` as a user meets it; what it builds is tested beside `wnn2hdl.pipeline.compile`."""
+"""`compile` as a user meets it; what it builds is tested beside `wnn2hdl.build.compile`."""
 
 import json
 from collections.abc import Callable

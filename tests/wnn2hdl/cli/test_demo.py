@@ -1,4 +1,4 @@
-"""What `demo` prints; that every stage runs is tested beside `wnn2hdl.demo`."""
+"""What `demo` prints; that every stage runs is tested beside `wnn2hdl.apps.demo`."""
 
 import json
 from collections.abc import Callable
@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
+from wnn2hdl.build.reporting import read_report
 from wnn2hdl.cli.demo import demo_command
 from wnn2hdl.errors import CheckError
-from wnn2hdl.pipeline.reporting import read_report
 
 Run = Callable[..., Result]
 
@@ -35,7 +35,7 @@ def run(monkeypatch: pytest.MonkeyPatch, write_build: Callable[..., Path], tmp_p
             flight=None,
             missing="pyproj is missing; install it with: pip install 'wnn2hdl[geo]'",
         )
-        monkeypatch.setattr("wnn2hdl.demo.run_demo", lambda *_: made)
+        monkeypatch.setattr("wnn2hdl.apps.demo.run_demo", lambda *_: made)
         return CliRunner().invoke(demo_command, list(words))
 
     return call

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.encode import parse_bits
-from wnn2hdl.pipeline.compile import compile_model
-from wnn2hdl.pipeline.planning import CompileOptions
-from wnn2hdl.pipeline.training import train
+from wnn2hdl.training.discriminators import train
 
 Run = Callable[..., Any]
 

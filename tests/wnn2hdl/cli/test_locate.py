@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from wnn2hdl.navigate import recording
+from wnn2hdl.apps.navigation import recording
 from wnn2hdl.samples.flight import make_flight, write_flight
 
 Run = Callable[..., Any]

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from wnn2hdl.navigate.camera import Camera
-from wnn2hdl.navigate.poses import frame_files, read_poses
-from wnn2hdl.navigate.recording import Recording
+from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.poses import frame_files, read_poses
+from wnn2hdl.apps.navigation.recording import Recording
 from wnn2hdl.samples import CLASSES
 
 Run = Callable[..., Any]

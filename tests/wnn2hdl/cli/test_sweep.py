@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
+from wnn2hdl.apps.sweep import PixelSets, answers_digest, draw
+from wnn2hdl.apps.sweep import run_sweep as real_sweep
+from wnn2hdl.apps.sweep.trial import run_trials
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.sweep import PixelSets, answers_digest, draw
-from wnn2hdl.sweep import run_sweep as real_sweep
-from wnn2hdl.sweep.trial import run_trials
 
 Run = Callable[..., Any]
 

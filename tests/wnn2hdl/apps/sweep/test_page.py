@@ -1,0 +1,79 @@
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+from wnn2hdl.apps.sweep.grid import Plan, grid
+from wnn2hdl.apps.sweep.page import present, write_page
+from wnn2hdl.apps.sweep.pixels import PixelSets
+from wnn2hdl.apps.sweep.study import run_sweep
+from wnn2hdl.apps.sweep.trial import run_trials
+
+
+class Outline(HTMLParser):
+    """Collects tags and text, and checks that what is opened is closed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.images: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "img":
+            self.images.append(dict(attrs)["src"] or "")
+        elif tag != "meta":
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += " ".join(data.split()) + " "
+
+
+def page(sets: PixelSets, plan: Plan, folder: Path, pictures: tuple[str, ...]) -> Outline:
+    outcome = run_sweep(
+        sets,
+        plan,
+        folder,
+        lambda sets, trials: iter([run_trials(sets, trials)]),
+        lambda *_: None,
+        finalist_trials=2,
+    )
+    outline = Outline()
+    outline.feed(write_page(outcome, sets, pictures, folder).read_text(encoding="utf-8"))
+    assert outline.open == []
+    return outline
+
+
+def test_the_page_tells_the_outcome_and_carries_its_pictures(
+    sets: PixelSets, plan: Plan, tmp_path: Path
+) -> None:
+    (tmp_path / "contour.svg").write_text("<svg/>")
+    outline = page(sets, plan, tmp_path, ("contour",))
+    assert outline.images == ["data:image/svg+xml;base64,PHN2Zy8+"]
+    assert "18 trials over 6 architectures, trained on 2,000 pixels of 2 images" in outline.text
+    assert "Chosen: n = " in outline.text
+    assert "Beyond the grid" not in outline.text
+
+
+def test_a_sweep_of_failures_still_has_a_page(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
+    failing = grid(replace(plan.recipe, bits=("R7",)), [2], [2], trials=2)
+    outline = page(sets, failing, tmp_path, ())
+    assert "0 are valid" in outline.text
+    assert "2 failed" in outline.text
+
+
+def test_presenting_a_sweep_draws_what_its_page_shows(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
+    outcome = run_sweep(
+        sets,
+        plan,
+        tmp_path,
+        lambda sets, trials: iter([run_trials(sets, trials)]),
+        lambda *_: None,
+        finalist_trials=2,
+    )
+    outline = Outline()
+    outline.feed(present(outcome, sets, tmp_path).read_text(encoding="utf-8"))
+    assert len(outline.images) == len(list(tmp_path.glob("*.svg")))
+    assert all(picture.startswith("data:") for picture in outline.images)

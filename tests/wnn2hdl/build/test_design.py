@@ -1,0 +1,82 @@
+"""A design in its files: whole, or refused in one line."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from wnn2hdl.build.design import Design, tables
+from wnn2hdl.edges import boundary
+from wnn2hdl.errors import ModelFileError
+from wnn2hdl.ir import LutNetwork, WisardModel
+from wnn2hdl.verify.specification import Specification
+
+pytestmark = pytest.mark.slow
+
+
+def test_a_design_survives_its_file(build: Path, tmp_path: Path) -> None:
+    design = Design.load(build)
+    design.save(tmp_path)
+    for name in ("design.json", "model.json"):
+        assert (tmp_path / name).read_bytes() == (build / name).read_bytes()
+    assert all(isinstance(network, LutNetwork) for network in design.networks.values())
+
+
+def test_each_network_is_its_table_where_that_is_cared_for(build: Path) -> None:
+    design = Design.load(build)
+    for name, table in tables(design.specification).items():
+        codes = np.flatnonzero(table.care)
+        assert 0 < codes.size < table.care.size, "a build in domain mode leaves codes out"
+        answers = design.networks[name].evaluate(codes)
+        np.testing.assert_array_equal(answers, table.values[codes])
+
+
+def test_in_exact_mode_every_code_is_cared_for(model: WisardModel) -> None:
+    specification = Specification.exact(model, boundary())
+    assert all(table.care.all() for table in tables(specification).values())
+
+
+def lost(data: dict[str, Any]) -> None:
+    del data["edge"]
+
+
+def beyond(data: dict[str, Any]) -> None:
+    data["pixel_care"].append(1 << 20)
+
+
+def twisted(data: dict[str, Any]) -> None:
+    data["pixel"] = "a network"
+
+
+def newer(data: dict[str, Any]) -> None:
+    data["version"] = 99
+
+
+def foreign(data: dict[str, Any]) -> None:
+    data["model_sha256"] = "0" * 64
+
+
+@pytest.mark.parametrize(
+    ("damage", "fault"),
+    [
+        (lost, "the design is damaged"),
+        (beyond, "the design is damaged"),
+        (twisted, "the design is damaged"),
+        (newer, "not a design of this wnn2hdl"),
+        (foreign, "the design was made from another model"),
+    ],
+)
+def test_a_damaged_file_is_refused(
+    pixel_build: Path, tmp_path: Path, damage: Callable[[dict[str, Any]], None], fault: str
+) -> None:
+    folder = Path(shutil.copytree(pixel_build, tmp_path / "copy"))
+    path = folder / "design.json"
+    data = json.loads(path.read_text())
+    damage(data)
+    path.write_text(json.dumps(data))
+    with pytest.raises(ModelFileError, match=fault):
+        Design.load(folder)

@@ -1,0 +1,35 @@
+"""Simulation in a process of its own says what it says in this one."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl.build.design import Design
+from wnn2hdl.build.simulating import simulate_apart, simulate_parts
+from wnn2hdl.errors import ToolError
+from wnn2hdl.ir import LutNetwork
+
+
+@pytest.mark.slow
+def test_a_right_circuit_runs_on_every_cared_for_code(pixel_build: Path) -> None:
+    design = Design.load(pixel_build)
+    cared = int(design.specification.care.sum())
+    assert simulate_parts(design, ["pixel"]) == ({"pixel": cared}, None)
+    assert simulate_apart(pixel_build, ["pixel"]) == ({"pixel": cared}, None)
+
+
+@pytest.mark.slow
+def test_a_wrong_circuit_is_told_in_words(pixel_build: Path, tmp_path: Path) -> None:
+    design = Design.load(pixel_build)
+    stuck = LutNetwork(design.decision.inputs, (), (("class_bit0", "1"),))
+    replace(design, networks={**design.networks, "pixel": stuck}).save(tmp_path)
+    vectors, failure = simulate_apart(tmp_path, ["pixel"])
+    assert vectors == {}
+    assert failure is not None
+    assert "the model says" in failure
+
+
+def test_a_process_that_fails_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(ToolError, match="failed"):
+        simulate_apart(tmp_path / "nothing", ["pixel"])

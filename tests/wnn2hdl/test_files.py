@@ -1,0 +1,151 @@
+import os
+import resource
+from pathlib import Path
+
+import pytest
+
+from wnn2hdl import files
+from wnn2hdl.errors import InputError, ModelFileError
+
+
+def test_the_same_data_give_the_same_bytes(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    files.write_json(path, {"b": 1, "a": ["é"]})
+    assert path.read_bytes() == '{\n "b": 1,\n "a": [\n  "é"\n ]\n}\n'.encode()
+    assert files.read_json(path, "a thing") == {"b": 1, "a": ["é"]}
+
+
+def test_writing_over_a_file_leaves_nothing_else_behind(tmp_path: Path) -> None:
+    path = tmp_path / "x.txt"
+    files.write_text(path, "old")
+    files.write_text(path, "new")
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_failed_write_keeps_the_old_file_and_no_scraps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "x.txt"
+    files.write_text(path, "old")
+
+    def interrupt(*args: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        files.write_text(path, "new")
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot write: .*No such file.*; choose a folder"):
+        files.write_text(tmp_path / "no" / "x.txt", "")
+
+
+def test_a_file_where_a_folder_is_gets_one_line(tmp_path: Path) -> None:
+    (tmp_path / "x.txt").mkdir()
+    with pytest.raises(InputError, match=r"cannot write: .*x\.txt \(Is a directory\); choose"):
+        files.write_text(tmp_path / "x.txt", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.txt"]
+
+
+def test_a_disk_without_room_gets_one_line_and_keeps_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "x.txt"
+    files.write_text(path, "old")
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limit[1]))
+    try:
+        with pytest.raises(InputError, match=r"cannot write: .*x\.txt \(File too large\)"):
+            files.write_bytes(path, bytes(2000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_text_that_is_no_unicode_gets_one_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot write this as UTF-8: '\\udcff' in .*x\.json; rename"):
+        files.write_json(tmp_path / "x.json", {"name": "a\udcff"})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_numbers_that_json_does_not_know_are_not_written(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        files.write_json(tmp_path / "x.json", {"a": float("nan")})
+
+
+def test_make_folder_makes_parents_and_minds_files(tmp_path: Path) -> None:
+    files.make_folder(tmp_path / "a" / "b")
+    files.make_folder(tmp_path / "a" / "b")
+    assert (tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="cannot make the folder"):
+        files.make_folder(tmp_path / "file")
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (None, "cannot read a model"),
+        (b"", "not a model, or a damaged one"),
+        (b'{"format":', "not a model, or a damaged one"),
+        (b"\xff\xfe\x00", "not a model, or a damaged one"),
+        (b"[" * 100_000, "not a model, or a damaged one"),
+        (b"[1, 2]", r"not a model: .* \(holds a JSON list\)"),
+        (b'{"a": NaN}', r"a damaged one: .* \(NaN is no finite number\)"),
+        (b'{"a": [-Infinity]}', r"a damaged one: .* \(-Infinity is no finite number\)"),
+        (b'{"a": 1e999}', r"a damaged one: .* \(1e999 is no finite number\)"),
+        (b'{"a": "\\ud800"}', r"a damaged one: .*surrogates not allowed"),
+    ],
+)
+def test_what_is_no_json_object_gets_one_line(tmp_path: Path, content: bytes | None, line: str) -> None:
+    path = tmp_path / "x.json"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ModelFileError, match=line) as caught:
+        files.read_json(path, "a model")
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
+
+
+def test_a_whole_surrogate_pair_is_a_letter(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_text('{"a": "\\ud83c\\udf33", "b": -1.5e3}')
+    assert files.read_json(path, "a model") == {"a": "\U0001f333", "b": -1500.0}
+
+
+def test_a_number_too_long_for_python_gets_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_text('{"a": ' + "9" * 5000 + "}")
+    with pytest.raises(ModelFileError, match="not a model, or a damaged one"):
+        files.read_json(path, "a model")
+
+
+def test_a_file_is_open_in_one_place_at_a_time(tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    first = files.open_alone(path, "scan")
+    with pytest.raises(InputError, match=f"another scan is writing to the same folder: {tmp_path}"):
+        files.open_alone(path, "scan")
+    os.close(first)
+    os.close(files.open_alone(path, "scan"))
+    with pytest.raises(InputError, match=r"cannot write the scan: .*No such file"):
+        files.open_alone(tmp_path / "none" / "journal", "scan")
+
+
+def test_a_new_folder_goes_again_if_nothing_came_of_it(tmp_path: Path) -> None:
+    def fail(folder: Path, *names: str) -> None:
+        with files.made_folder(folder):
+            for name in names:
+                (folder / name).touch()
+            raise InputError("bad input")
+
+    (tmp_path / "old").mkdir()
+    for folder in ("old", "new"):
+        with pytest.raises(InputError, match="bad input"):
+            fail(tmp_path / folder)
+    assert [path.name for path in tmp_path.iterdir()] == ["old"]
+    with pytest.raises(InputError, match="bad input"):
+        fail(tmp_path / "new", "finished")
+    assert (tmp_path / "new" / "finished").exists()

@@ -1,0 +1,51 @@
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from wnn2hdl.dataset import ColourHistogram
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import BitSelect, WisardModel
+from wnn2hdl.training.bitselect import look_up_table
+from wnn2hdl.training.crossval import cross_validate, pixels_right
+
+ENCODER = BitSelect(("R7",))
+
+
+def image(dark: tuple[int, int], bright: tuple[int, int]) -> ColourHistogram:
+    """Pixels of (class 0, class 1) that are black and that are red."""
+    return ColourHistogram(np.array([0x000000, 0xFF0000], np.uint32), np.array([dark, bright], np.int64).T)
+
+
+def constant(answer: int) -> WisardModel:
+    return look_up_table(ENCODER, ("a", "b"), np.full(2, answer), {})
+
+
+def test_pixels_right_are_those_whose_class_the_model_names() -> None:
+    model = look_up_table(ENCODER, ("a", "b"), np.array([0, 1]), {})
+    assert pixels_right(model, image((5, 1), (2, 7))) == 5 + 7
+
+
+@pytest.mark.parametrize("count", [2, 4, 5, 12])
+def test_no_image_is_tested_by_a_model_that_saw_it_and_each_is_tested_once(count: int) -> None:
+    images = [image((1, 0), (0, 1))] * count
+    trained: list[set[int]] = []
+
+    def train(chosen: Sequence[int]) -> WisardModel:
+        trained.append(set(chosen))
+        return constant(0)
+
+    cross_validate(images, train)
+    left_out = [set(range(count)) - chosen for chosen in trained]
+    assert sorted(i for fold in left_out for i in fold) == list(range(count))
+    assert len(left_out) == min(count, 5)
+
+
+def test_accuracy_is_the_share_of_all_pixels() -> None:
+    images = [image((90, 0), (0, 0)), image((0, 10), (0, 0))]
+    assert cross_validate(images, lambda chosen: constant(0)) == 0.9
+
+
+def test_one_image_cannot_be_cross_validated() -> None:
+    with pytest.raises(InputError, match="needs two images: 1; give more"):
+        cross_validate([image((1, 0), (0, 1))], lambda chosen: constant(0))

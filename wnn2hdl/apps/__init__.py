@@ -1,0 +1,1 @@
+"""The applications: deforestation maps, navigation, the architecture sweep, the demo."""

@@ -1,0 +1,195 @@
+"""A flight over a map, every frame located by every method: calibrate, learn, search, compare."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.apps.navigation.calibrate import Calibration, calibrate
+from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.fixes import accepted, fixes, tracked
+from wnn2hdl.apps.navigation.geometry import ground_patch
+from wnn2hdl.apps.navigation.grid import MapGrid
+from wnn2hdl.apps.navigation.matching import Acceptance
+from wnn2hdl.apps.navigation.methods import Method, compared_methods
+from wnn2hdl.apps.navigation.navigator import Located, Navigator, Place, PoseTolerance
+from wnn2hdl.apps.navigation.poses import Pose, require_located
+from wnn2hdl.apps.navigation.recording import Recording
+from wnn2hdl.apps.navigation.results import FlightResult, MethodResult, SearchKind, SearchResult
+from wnn2hdl.apps.navigation.weightless import GSD_M, Sighting, WeightlessEdges, by_rule, learn
+from wnn2hdl.edges import grey
+from wnn2hdl.errors import InputError
+from wnn2hdl.progress import Progress, reported
+
+T = TypeVar("T")
+
+COARSER = 2
+"""Calibration matches on a grid this much coarser: it needs metres, not half metres."""
+
+
+@dataclass(frozen=True)
+class FlightRun:
+    """All that a run found out.
+
+    Attributes:
+        result: figures and fixes, for tables and pictures.
+        grid: the map as it was matched.
+        calibration: None if the camera was taken as given.
+        acceptances: of each search and method: from which confidence on a fix is given.
+        methods: in the order of each search's rows.
+        weightless: the edges of the weightless row, as learned or by rule.
+    """
+
+    result: FlightResult
+    grid: MapGrid
+    calibration: Calibration | None
+    acceptances: Mapping[Place, Acceptance]
+    methods: tuple[Method, ...]
+    weightless: WeightlessEdges
+
+    def rows(self, search: SearchResult) -> dict[str, MethodResult]:
+        """A search's rows by their names in JSON."""
+        keys = [method.key for method in self.methods]
+        keys += [f"{key}-track" for key in keys]
+        return dict(zip(keys, search.methods, strict=True))
+
+
+def run_flight(
+    recording: Recording,
+    calibrating: Sequence[Pose],
+    searches: Mapping[SearchKind, float | None],
+    progress: Progress,
+    *,
+    heading_deg: float | None = None,
+    scale: float = 0.0,
+    jobs: int | None = None,
+) -> FlightRun:
+    """Locate all frames of a recording.
+
+    Args:
+        recording: its poses are those that are scored.
+        calibrating: poses of other frames, on which the camera, the weightless edges and the thresholds of
+            confidence are fitted; empty to take all as it is.
+        searches: by kind, half the side in metres of a window around the logged position; None for the whole
+            map.
+        progress: what to tell how far it is.
+        heading_deg: how far the logged headings may be off; if not told, what the calibration found, or 0.
+        scale: share by which the logged heights may be off.
+        jobs: frames located at a time; as many as the machine has cores if not told.
+
+    Raises:
+        InputError: a frame cannot be read, or the calibration fails; a position that is needed is not known;
+            no frame shows anything of the map.
+    """
+    add = "add its latitude and longitude, or"
+    require_located(calibrating, "calibration takes known positions", f"{add} calibrate on other frames")
+    if any(half is not None for half in searches.values()):
+        require_located(
+            recording.poses, "a window lies around a known position", f"{add} search the map alone"
+        )
+    progress("map", 0, 1)
+    grid = recording.world.resampled()
+    progress("map", 1, 1)
+    calibration = calibrated(recording, calibrating, progress) if calibrating else None
+
+    def cameras_at(pose: Pose) -> tuple[Camera, ...]:
+        return calibration.cameras_at(pose.frame) if calibration else (recording.camera,)
+
+    coarse = recording.world.resampled(GSD_M)
+    if heading_deg is None:
+        heading_deg = calibration.heading_search_deg if calibration else 0.0
+    tolerance = PoseTolerance(heading_deg, scale)
+    if calibrating:
+        sightings = (
+            _sighting(coarse, recording.read(pose), pose, cameras_at(pose)[0], tolerance)
+            for pose in calibrating
+        )
+        weightless = learn(coarse.image, coarse.valid, sightings)
+    else:
+        weightless = by_rule()
+    methods = compared_methods(weightless)
+    navigator = Navigator({None: grid, GSD_M: coarse}, methods)
+
+    def locate(pose: Pose) -> dict[Place, Located | None]:
+        windows = {
+            kind: None if half is None else (pose.latitude_deg, pose.longitude_deg, half)
+            for kind, half in searches.items()
+        }
+        return navigator.locate(recording.read(pose), pose, cameras_at(pose), windows, tolerance)
+
+    proving = list(_in_parallel(locate, calibrating, jobs, "thresholds", progress))
+    found = list(_in_parallel(locate, recording.poses, jobs, "frames", progress))
+    if not any(one[place] for one in found for place in one):
+        raise InputError(
+            "no frame shows anything of the map",
+            value=recording.map_name,
+            mend="check the positions, the heights and the camera",
+        )
+    searched, acceptances = [], {}
+    for kind, half in searches.items():
+        rows, tracks = [], []
+        for method in methods:
+            place = kind, method.key
+            acceptance = accepted(grid, calibrating, [one[place] for one in proving])
+            located = [one[place] for one in found]
+            rows.append(MethodResult(method.title, fixes(grid, recording.poses, located, acceptance)))
+            track = tracked(grid, recording.poses, located, acceptance, half)
+            tracks.append(MethodResult(f"{method.title}, track", track, tracked=True))
+            acceptances[place] = acceptance
+        searched.append(SearchResult(kind, half, (*rows, *tracks)))
+    camera = calibration.cameras[0] if calibration else recording.camera
+    result = FlightResult(
+        map_name=recording.map_name,
+        ground_sample_distance_m=grid.gsd_m,
+        focal_px=camera.fx,
+        tilts_deg=tuple(tilt for _, tilt in calibration.stretches) if calibration else (camera.tilt_deg,),
+        calibrated_on=tuple(pose.frame for pose in calibrating),
+        searches=tuple(searched),
+    )
+    return FlightRun(result, grid, calibration, acceptances, methods, weightless)
+
+
+def calibrated(recording: Recording, calibrating: Sequence[Pose], progress: Progress) -> Calibration:
+    """The camera as fitted on some frames."""
+    coarse = recording.world.resampled(COARSER * recording.world.gsd_m)
+    frames = [grey(recording.read(pose)) for pose in calibrating]
+    return calibrate(
+        coarse,
+        grey(coarse.image),
+        frames,
+        calibrating,
+        recording.camera,
+        lambda done, total: progress("calibration", done, total),
+    )
+
+
+def _sighting(
+    grid: MapGrid, frame: NDArray[np.uint8], pose: Pose, camera: Camera, tolerance: PoseTolerance
+) -> Sighting:
+    """A calibration frame as the weightless edges learn from it."""
+    patches = tuple(ground_patch(frame, tried, camera, grid.gsd_m) for tried in tolerance.poses(pose))
+    row, column = (float(axis) for axis in grid.to_pixel(pose.latitude_deg, pose.longitude_deg))
+    return Sighting(patches, row, column)
+
+
+def _in_parallel(
+    locate: Callable[[Pose], T], poses: Sequence[Pose], jobs: int | None, step: str, progress: Progress
+) -> Iterator[T]:
+    """Results in order. Threads, since they share the map and spend their time in OpenCV and NumPy.
+
+    OpenCV gets no threads besides, whose time would be counted to no frame. However it ends, no thread is
+    left behind: one inside OpenCV while Python goes down would abort the process.
+    """
+    workers = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        yield from reported(workers.map(locate, poses), step, len(poses), progress)
+    finally:
+        workers.shutdown(cancel_futures=True)
+        cv2.setNumThreads(threads)

@@ -1,0 +1,133 @@
+"""The ways of seeing that are compared: how a frame is laid on the ground, and what of it is matched."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.apps.navigation.channels import ChannelIndex, Channels
+from wnn2hdl.apps.navigation.matching import MapIndex, Match, Picture, Score, Window
+from wnn2hdl.apps.navigation.weightless import WeightlessEdges
+from wnn2hdl.edges import canny, grey, sobel
+from wnn2hdl.edges.reference import CANNY_SIGMA
+
+EDGE_SHARE = 0.2
+"""Share of a picture's pixels whose gradient reaches the threshold of Sobel, and of Canny to go on with."""
+
+CANNY_RATIO = 2.5
+"""Canny's upper threshold, to start an edge with, over his lower; he advised 2 to 3."""
+
+Description = Picture | Channels
+"""What is matched: one picture, or several binary ones of the same scene."""
+
+Describe = Callable[[NDArray[np.uint8], NDArray[np.bool_]], tuple[Description, NDArray[np.bool_]]]
+"""Of a picture, uint8 ``[h, w, 3]``, and its valid pixels to a description and which of its pixels count."""
+
+
+class Index(Protocol):
+    """A described map that is searched for described frames."""
+
+    def search(
+        self,
+        template: Any,
+        mask: NDArray[np.bool_],
+        score: Score = ...,
+        window: Window | None = ...,
+        *,
+        min_overlap: float = ...,
+        exclusion: int = ...,
+    ) -> Match | None:
+        """As `wnn2hdl.apps.navigation.matching.MapIndex.search`."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """One row of the table.
+
+    Attributes:
+        key: its name in JSON, ``perspective-canny``.
+        title: its name in tables, "perspective + Canny".
+        describe: what is matched; the same for the map and for patches of frames.
+        index: of a described map.
+        perspective: frames are laid on the ground by all angles; else by yaw and scale alone.
+        gsd_m: ground sample distance it works at; the map's own if none.
+    """
+
+    key: str
+    title: str
+    describe: Describe
+    index: Callable[[Any, NDArray[np.bool_]], Index] = MapIndex
+    perspective: bool = True
+    gsd_m: float | None = None
+
+
+def compared_methods(weightless: WeightlessEdges) -> tuple[Method, ...]:
+    """The five rows, with weightless edges that were learned or chosen before."""
+    return (
+        Method("perspective-canny", "perspective + Canny", canny_edges),
+        Method("rotation-canny", "rotation + Canny", canny_edges, perspective=False),
+        Method(
+            "perspective-weightless",
+            "perspective + weightless",
+            weightless.extract,
+            ChannelIndex,
+            gsd_m=weightless.gsd_m,
+        ),
+        Method("perspective-sobel", "perspective + Sobel", sobel_edges),
+        Method("grey", "perspective + grey levels", grey_levels),
+    )
+
+
+def canny_edges(
+    picture: NDArray[np.uint8], valid: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Canny's edges, one pixel thicker all around: a thin line misses its like by a pixel.
+
+    Thresholds are the picture's own: what is an edge in sunlit streets has no like on ploughed fields.
+    """
+    levels = grey(picture)
+    # The Gaussian before and the line's growth after reach five pixels.
+    inside = shrunk(valid, 5)
+    smooth = cv2.GaussianBlur(levels, (0, 0), CANNY_SIGMA)
+    across, down = (cv2.Sobel(smooth, cv2.CV_32F, *axis, ksize=3) for axis in ((1, 0), (0, 1)))
+    low = _threshold(np.hypot(across, down), inside)
+    edges = np.pad(canny(levels, round(low), round(CANNY_RATIO * low)), 1).astype(np.uint8)
+    cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+    return np.asarray(cv2.dilate(edges, cross) > 0), inside
+
+
+def sobel_edges(
+    picture: NDArray[np.uint8], valid: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Sobel's edges in whole numbers, as the hardware baseline, with the picture's own threshold."""
+    levels = grey(picture)
+    inside = shrunk(valid, 1)
+    across, down = (cv2.Sobel(levels, cv2.CV_32F, *axis, ksize=3) for axis in ((1, 0), (0, 1)))
+    threshold = _threshold(np.abs(across) + np.abs(down), inside)
+    return np.pad(sobel(levels, round(threshold)), 1), inside
+
+
+def _threshold(gradient: NDArray[np.floating], inside: NDArray[np.bool_]) -> float:
+    """What `EDGE_SHARE` of the gradients reach, at least 1."""
+    known = gradient[inside]
+    return max(1.0, float(np.quantile(known, 1 - EDGE_SHARE))) if known.size else 1.0
+
+
+def grey_levels(
+    picture: NDArray[np.uint8], valid: NDArray[np.bool_]
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """The picture in grey, without any edges."""
+    return grey(picture), valid
+
+
+def shrunk(valid: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
+    """Valid pixels whose surroundings of ``by`` pixels are valid too, so that no border is taken for an edge.
+
+    What lies beyond the picture is not valid.
+    """
+    inside = np.pad(valid, by).astype(np.uint8)
+    core = cv2.erode(inside, np.ones((2 * by + 1, 2 * by + 1), dtype=np.uint8))
+    return np.asarray(core[by:-by, by:-by] > 0)

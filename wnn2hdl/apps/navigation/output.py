@@ -1,0 +1,299 @@
+"""The results of a flight as files: tables for people and programs, and the fixes as GeoJSON."""
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.apps.navigation.results import FAR_M, FIGURES, FlightResult, MethodResult, SearchResult
+from wnn2hdl.files import make_folder, write_json, write_text
+
+TABLE_VERSION = 1
+"""Of the form of `flight.json`; it rises when a key changes its meaning or goes away."""
+
+MISSING = "n/a"
+
+
+@dataclass(frozen=True)
+class PublishedMethod:
+    """A row of the reference's table: another flight, 35 frames, searched within ±95 m of the truth.
+
+    Its frames are 219 pixels wide and its windows 599, at half a metre a pixel.
+    """
+
+    name: str
+    mean_m: float
+    std_m: float
+    variance_m2: float
+    false_positive_percent: float
+    true_positive_percent: float
+
+
+PUBLISHED = (
+    PublishedMethod("perspective + Canny", 36.04, 20.27, 410.86, 0.0, 100.0),
+    PublishedMethod("rotation + Canny", 50.01, 25.67, 660.44, 2.86, 97.14),
+    PublishedMethod("perspective + weightless edge filter", 44.94, 17.50, 305.89, 0.0, 100.0),
+)
+
+_FRAME_COLUMNS = (
+    "search",
+    "method",
+    "frame",
+    "truth_latitude",
+    "truth_longitude",
+    "latitude",
+    "longitude",
+    "error_m",
+    "geodesic_error_m",
+    "confidence",
+    "fixed",
+    "seconds",
+)
+
+_STATISTICS = """\
+Errors are great-circle distances over all frames with a position, confident or not; the standard deviation
+and the variance are the population's (divided by the number of frames)."""
+
+_PUBLISHED_NOTE = """\
+The published rows were measured on a flight that is not at hand, searched within ±95 m of the truth: none of
+their errors could exceed 134 m, and a blind guess would have been 73 m off on average."""
+
+
+def write_results(folder: Path, result: FlightResult) -> tuple[Path, ...]:
+    """Write ``flight.md``, ``flight.json``, ``table.csv``, ``frames.csv`` and a GeoJSON a search.
+
+    Args:
+        folder: made if it does not exist; files of these names are replaced.
+        result: a whole run.
+
+    Returns:
+        the files written.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    make_folder(folder)
+    texts = {
+        "flight.md": flight_markdown(result),
+        "table.csv": table_csv(result),
+        "frames.csv": frames_csv(result),
+    }
+    for search in result.searches:
+        # One feature a line: such files are read by programs and compared by lines.
+        features = ",\n".join(json.dumps(feature, ensure_ascii=False) for feature in fix_features(search))
+        texts[f"fixes_{search.key}.geojson"] = (
+            f'{{"type": "FeatureCollection", "features": [\n{features}\n]}}\n'
+        )
+    for name, text in texts.items():
+        write_text(folder / name, text)
+    write_json(folder / "flight.json", flight_dict(result))
+    return (*(folder / name for name in texts), folder / "flight.json")
+
+
+def flight_dict(result: FlightResult) -> dict[str, Any]:
+    """The JSON object of ``flight.json``: every figure and every frame; numbers that are none become null."""
+    return {
+        "version": TABLE_VERSION,
+        "map": result.map_name,
+        "ground_sample_distance_m": result.ground_sample_distance_m,
+        "camera": {"focal_px": result.focal_px, "tilts_deg": list(result.tilts_deg)},
+        "calibrated_on": list(result.calibrated_on),
+        "largest_geodesic_difference_m": result.largest_geodesic_difference_m,
+        "searches": [
+            {
+                "kind": search.kind,
+                "half_width_m": search.half_width_m,
+                "furthest_m": search.furthest_m,
+                "blind_mean_m": search.blind_mean_m,
+                "methods": [
+                    {"name": method.name}
+                    | {figure: getattr(method, figure) for figure in FIGURES}
+                    | {"frames": [_finite(asdict(fix)) for fix in method.fixes]}
+                    for method in search.methods
+                ],
+            }
+            for search in result.searches
+        ],
+        "published": [asdict(row) | {"measured_here": False} for row in PUBLISHED],
+    }
+
+
+def table_csv(result: FlightResult) -> str:
+    """A line for each search and method, with all figures; empty where there is none."""
+    return _csv(
+        ("search", "method", *FIGURES),
+        (
+            (search.key, method.name, *(getattr(method, figure) for figure in FIGURES))
+            for search in result.searches
+            for method in search.methods
+        ),
+    )
+
+
+def frames_csv(result: FlightResult) -> str:
+    """A line for each search, method and frame; empty where there is no position."""
+    return _csv(
+        _FRAME_COLUMNS,
+        (
+            (search.key, method.name, *asdict(fix).values())
+            for search in result.searches
+            for method in search.methods
+            for fix in method.fixes
+        ),
+    )
+
+
+def fix_features(search: SearchResult) -> list[dict[str, Any]]:
+    """The truth and every position as GeoJSON point features (RFC 7946: longitude first, WGS 84).
+
+    Those not known are left out. Positions have eight decimals, about a millimetre. The truth's ``method`` is
+    "truth".
+    """
+    features = [
+        _point(fix.truth_longitude, fix.truth_latitude, {"method": "truth", "frame": fix.frame})
+        for fix in (search.methods[0].fixes if search.methods else ())
+        if fix.truth_latitude is not None and fix.truth_longitude is not None
+    ]
+    for method in search.methods:
+        features += [
+            _point(
+                fix.longitude,
+                fix.latitude,
+                {"method": method.name, "frame": fix.frame}
+                | _finite(
+                    {
+                        "error_m": fix.error_m,
+                        "geodesic_error_m": fix.geodesic_error_m,
+                        "confidence": fix.confidence,
+                        "fixed": fix.fixed,
+                        "seconds": fix.seconds,
+                    }
+                ),
+            )
+            for fix in method.fixes
+            if fix.latitude is not None and fix.longitude is not None
+        ]
+    return features
+
+
+def flight_markdown(result: FlightResult) -> str:
+    """The page ``flight.md``: the reference's table for each search, with its published figures beside."""
+    fitted = (
+        f"fitted on {len(result.calibrated_on)} frames that are not scored"
+        if result.calibrated_on
+        else "given"
+    )
+    tilts = ", then ".join(f"{tilt:.2f}" for tilt in result.tilts_deg)
+    difference = result.largest_geodesic_difference_m
+    sections = [
+        "# Positions from edges",
+        f"Map `{result.map_name}` at {result.ground_sample_distance_m:g} m a pixel; camera {fitted}: focal "
+        f"length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
+        _STATISTICS,
+        f"They differ from geodesic distances by at most {difference:.2f} m."
+        if difference is not None
+        else "",
+        *(section for search in result.searches for section in _search_sections(search)),
+    ]
+    return "\n\n".join(section for section in sections if section) + "\n"
+
+
+def _search_sections(search: SearchResult) -> list[str]:
+    if search.half_width_m is None:
+        title, limits = "## Searched over the whole map", ""
+    else:
+        title = f"## Searched within ±{search.half_width_m:g} m of the truth"
+        limits = (
+            f"No error can exceed {search.furthest_m:.0f} m here, and a blind guess would be "
+            f"{search.blind_mean_m:.0f} m off on average."
+        )
+    heads = ["method", "mean error m", "standard deviation m", "variance m²"]
+    heads += [f"error ≥ {FAR_M:g} m", f"< {FAR_M:g} m"]
+    rows = [_figures(method.name, method) for method in search.methods]
+    published = [_figures(f"*{row.name}: published, another flight*", row) for row in PUBLISHED]
+    confident = [
+        [
+            method.name,
+            str(len(method.fixes)),
+            _percent(method.fixed_percent),
+            _percent(method.fixed_true_percent),
+            _number(method.fixed_mean_m),
+            _number(method.mean_seconds, 3),
+        ]
+        for method in search.methods
+    ]
+    return [
+        title,
+        limits,
+        _table(heads, [*rows, *published]),
+        _PUBLISHED_NOTE,
+        "What the confidence is worth:",
+        _table(
+            ["method", "frames", "fixed", f"fixes < {FAR_M:g} m", "mean error of fixes m", "s a frame"],
+            confident,
+        ),
+        _without_fix(search),
+    ]
+
+
+def _without_fix(search: SearchResult) -> str:
+    silent = [method.name for method in search.methods if not method.fixed_percent]
+    if not silent:
+        return ""
+    return (
+        f"No fix is given by {', '.join(silent)}: by what the calibration's frames tell, none of their "
+        "positions is sure enough. More frames to calibrate on, ten or more, often help."
+    )
+
+
+def _figures(name: str, row: MethodResult | PublishedMethod) -> list[str]:
+    return [
+        name,
+        _number(row.mean_m),
+        _number(row.std_m),
+        _number(row.variance_m2),
+        _percent(row.false_positive_percent),
+        _percent(row.true_positive_percent),
+    ]
+
+
+def _number(value: float | None, decimals: int = 2) -> str:
+    return MISSING if value is None else f"{value:.{decimals}f}"
+
+
+def _percent(value: float | None) -> str:
+    return MISSING if value is None else f"{value:.2f} %"
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    aligned = ["---", *["---:"] * (len(heads) - 1)]
+    lines = ([cell.replace("|", "\\|") for cell in line] for line in (heads, aligned, *rows))
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _csv(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
+def _point(longitude: float, latitude: float, properties: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "type": "Feature",
+        "geometry": {"type": "Point", "coordinates": [round(longitude, 8), round(latitude, 8)]},
+        "properties": properties,
+    }
+
+
+def _finite(fields: dict[str, Any]) -> dict[str, Any]:
+    """The fields with None for infinities and NaN, which JSON has no word for."""
+    return {
+        key: None if isinstance(value, float) and not math.isfinite(value) else value
+        for key, value in fields.items()
+    }

@@ -1,0 +1,83 @@
+"""A run as one JSON object, and as files."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.apps.navigation.flight import FlightRun
+from wnn2hdl.apps.navigation.output import write_results
+from wnn2hdl.apps.navigation.plots import plot_errors, plot_tracks
+from wnn2hdl.apps.navigation.results import FIGURES, MethodResult, SearchResult
+from wnn2hdl.files import write_json
+
+_KINDS = (
+    "errors.*",
+    "calibration.json",
+    *(f"{kind}_{search}.*" for kind in ("fixes", "tracks") for search in ("map", "window_*m")),
+)
+"""Files that not every run writes."""
+
+
+def summary(run: FlightRun) -> dict[str, Any]:
+    """What ``locate --json`` prints.
+
+    ``methods`` are those of the window's search, or of the whole map's if nothing else was searched. Of each,
+    ``confidence_threshold`` is null where no fix is ever given, and for tracks, whose filter judges itself.
+    """
+    searches = {search.kind: _search(run, search) for search in run.result.searches}
+    first = searches.get("window") or searches["map"]
+    return {
+        "map": run.result.map_name,
+        "ground_sample_distance_m": run.result.ground_sample_distance_m,
+        "frames": len(run.result.searches[0].methods[0].fixes),
+        "methods": first["methods"],
+        "searches": searches,
+        "calibration": run.calibration.report() if run.calibration else None,
+        "largest_geodesic_difference_m": run.result.largest_geodesic_difference_m,
+    }
+
+
+def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
+    """Write tables, GeoJSON, plots of errors and tracks, and what was learned; an earlier run's files go.
+
+    Where no truth is known there are no errors to plot.
+
+    Returns:
+        the files written.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    files = [*write_results(folder, run.result)]
+    if any(method.errors_m for search in run.result.searches for method in search.methods):
+        files += plot_errors(run.result, folder / "errors")
+    for search in run.result.searches:
+        raw = replace(search, methods=tuple(method for method in search.methods if not method.tracked))
+        files += plot_tracks(
+            raw, run.grid.image, run.grid.to_pixel, run.grid.gsd_m, folder / f"tracks_{search.key}"
+        )
+    if run.calibration:
+        learned = run.calibration.report() | {"weightless": run.weightless.to_json()}
+        write_json(folder / "calibration.json", learned)
+        files.append(folder / "calibration.json")
+    for pattern in _KINDS:
+        for file in {*folder.glob(pattern)} - {*files}:
+            file.unlink()
+    return tuple(files)
+
+
+def _search(run: FlightRun, search: SearchResult) -> dict[str, Any]:
+    return {
+        "half_width_m": search.half_width_m,
+        "furthest_m": search.furthest_m,
+        "blind_mean_m": search.blind_mean_m,
+        "methods": {key: _figures(run, search, key, row) for key, row in run.rows(search).items()},
+    }
+
+
+def _figures(run: FlightRun, search: SearchResult, key: str, row: MethodResult) -> dict[str, Any]:
+    acceptance = run.acceptances.get((search.kind, key))
+    figures = {name: getattr(row, name) for name in FIGURES}
+    threshold = acceptance.threshold if acceptance and math.isfinite(acceptance.threshold) else None
+    return figures | {"confidence_threshold": threshold}

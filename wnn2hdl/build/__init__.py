@@ -1,0 +1,1 @@
+"""A build folder, from the plan to the page: the one composer of stages."""

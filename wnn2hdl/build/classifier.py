@@ -1,0 +1,45 @@
+"""The circuit of a build as a classifier of pictures."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.build.design import Design
+from wnn2hdl.build.folder import failure
+from wnn2hdl.build.verification import open_build
+from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.classifiers import PictureClassifier, PixelTable, familiar_colours, model_classifier
+from wnn2hdl.ir import LutNetwork, WisardModel, bits_to_codes, picture_encoder
+
+
+def open_classifier(path: Path) -> PictureClassifier:
+    """The classifier in a model file; or the circuit of a build folder, cared for or not.
+
+    A circuit knows the pixels in its care set that have colours its model was trained on.
+
+    Raises:
+        ModelFileError: the file is missing, damaged or no model.
+        InputError: the folder is no build or a failed one, or the model reads no pixels.
+    """
+    if reason := failure(path):
+        raise InputError(f"the build failed: {reason}", value=path, mend="compile the model again")
+    if path.is_dir():
+        design = open_build(path)[0]
+        return replace(circuit_classifier(design), colours=familiar_colours(design.model))
+    return model_classifier(WisardModel.load(path))
+
+
+def circuit_classifier(design: Design) -> PixelTable:
+    """The classifier that a design's circuit is, cared for or not; it knows what is in its care set."""
+    encoder, answers = picture_encoder(design.model), circuit_answers(design.decision)
+    # Three classes take two bits, so a circuit may answer a fourth where it is free: taken for the last one.
+    answers = np.minimum(answers, len(design.model.classes) - 1)
+    care = design.specification.care
+    return PixelTable(design.model.classes, encoder, answers.astype(np.uint8), care)
+
+
+def circuit_answers(network: LutNetwork) -> NDArray[np.int64]:
+    """Class index for every code as the circuit computes it, cared for or not: int64 ``[2**width]``."""
+    return bits_to_codes(network.evaluate(np.arange(1 << len(network.inputs))))

@@ -1,0 +1,270 @@
+"""From a model to a build folder: plan, emit, check, count, report."""
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from wnn2hdl.build.checking import Checked, check
+from wnn2hdl.build.circuits import GENERATORS, emit
+from wnn2hdl.build.classifier import circuit_classifier
+from wnn2hdl.build.design import Design
+from wnn2hdl.build.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
+from wnn2hdl.build.planning import CompileOptions, Plan, plan
+from wnn2hdl.build.reporting import command, evaluation, model_figures, sample_picture, write_page
+from wnn2hdl.dataset import Dataset, from_masks
+from wnn2hdl.emit import write_manifest
+from wnn2hdl.errors import CheckError, InputError
+from wnn2hdl.evaluation.accuracy import evaluate, require_same_classes
+from wnn2hdl.evaluation.classifiers import model_classifier
+from wnn2hdl.files import write_json, write_text
+from wnn2hdl.images import Palette, write_png
+from wnn2hdl.ir import WisardModel
+from wnn2hdl.progress import Progress
+from wnn2hdl.report import (
+    UNCLASSIFIED,
+    BuildReport,
+    Care,
+    EdgeFigures,
+    Minimised,
+    PartFigures,
+    Parts,
+    Proof,
+    report_dict,
+    report_markdown,
+)
+from wnn2hdl.synth import OPTIONS, XC7Z020, Synthesis, utilisation
+from wnn2hdl.tools import find_yosys
+from wnn2hdl.verify.specification import Specification
+
+
+@dataclass(frozen=True, eq=False)
+class Build:
+    """A finished build.
+
+    Attributes:
+        folder: where it lies.
+        report: the object of its `report.json`.
+        failure: why the circuit is not the model; None if it is.
+    """
+
+    folder: Path
+    report: dict[str, Any]
+    failure: str | None
+
+
+@dataclass
+class _Clock:
+    """Wall-clock seconds by stage."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        started = time.perf_counter()
+        yield
+        self.seconds[name] = time.perf_counter() - started
+
+
+def compile_model(
+    model: WisardModel,
+    folder: Path,
+    options: CompileOptions,
+    progress: Progress,
+) -> Build:
+    """Compile a model into a folder.
+
+    The folder appears when all is written; where a check fails it holds a file `FAILED` that says why.
+
+    Args:
+        model: a pixel model.
+        folder: the build folder; an earlier build there is replaced.
+        options: the user's choices.
+        progress: told of every stage.
+
+    Raises:
+        InputError: the model or the imagery cannot be used, the test masks have other classes, or the folder
+            cannot be written.
+        ToolError: an outside program is missing or failed.
+    """
+    test_set = _test_set(options)
+    if test_set is not None:
+        require_same_classes(model.classes, test_set)
+    clock = _Clock()
+    with staged(folder) as staging:
+        with clock.stage("plan"):
+            planned = plan(model, options, progress)
+        with clock.stage("emit"):
+            progress("writing Verilog", 0, 1)
+            circuits = emit(
+                planned.design,
+                staging,
+                sobel_threshold=options.sobel_threshold,
+                options=_header(planned.design, options),
+            )
+            progress("writing Verilog", 1, 1)
+        with clock.stage("check and synthesise"):
+            checked = check(planned.design, circuits, progress)
+        with clock.stage("evaluate"):
+            measured = _measure(planned.design, test_set, progress)
+        report = report_dict(_report(folder.name, planned, options, checked, measured, clock))
+        write_json(staging / REPORT_FILE, report)
+        write_text(staging / REPORT_PAGE, report_markdown(report))
+        write_png(staging / SAMPLE_FILE, sample_picture(test_set))
+        write_page(staging)
+        if checked.failure is not None:
+            write_text(staging / FAILED, checked.failure + "\n")
+        names = sorted(path.name for path in staging.iterdir())
+        write_manifest(staging, names, versions=report["tools"], options=report["options"])
+    return Build(folder, report, checked.failure)
+
+
+def require_luts(build: Build, max_luts: int) -> None:
+    """Raise `CheckError` if the build's target takes more than ``max_luts`` LUTs."""
+    luts = build.report["parts"][build.report["target"]]["luts"]
+    if luts > max_luts:
+        raise CheckError(
+            f"the {build.report['target']} takes more LUTs than allowed",
+            value=f"{luts}, allowed are {max_luts}",
+            mend="try domain mode, another model or more --effort",
+        )
+
+
+def _test_set(options: CompileOptions) -> Dataset | None:
+    """The labelled pictures that the options name; raises InputError for half of what it takes."""
+    if options.test_images is None or options.test_masks is None:
+        if options.test_images or options.test_masks:
+            raise InputError(
+                "these options go together", value="--test-images and --test-masks", mend="give both"
+            )
+        if options.palette:
+            raise InputError(
+                "a palette belongs to masks", value=options.palette, mend="give --test-masks too"
+            )
+        return None
+    palette = Palette.read(options.palette) if options.palette else None
+    return from_masks(options.test_images, options.test_masks, palette)
+
+
+def _header(design: Design, options: CompileOptions) -> list[str]:
+    specification = design.specification
+    care = specification.care
+    kind = "pixel" if isinstance(specification, Specification) else "neighbourhood"
+    lines = [f"Mode {design.mode}: equal to the model on {int(care.sum())} of {len(care)} {kind} codes."]
+    if design.mode == "domain":
+        lines.append("On other codes it may answer anything.")
+    made = f"style {design.style}, effort {options.effort}."
+    if isinstance(specification, Specification):
+        edges = specification.edge_filter
+        made = f"Edge filter {edges.name}, {edges.size} patterns; {made}"
+    return [*lines, f"{made[0].upper()}{made[1:]}"]
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """What labelled images show; None where there were none, or no classifier to show them."""
+
+    accuracy: float | None = None
+    model_accuracy: float | None = None
+    coverage: float | None = None
+    confusion: tuple[tuple[int, ...], ...] | None = None
+
+
+def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _Measured:
+    if test_set is None or design.target in UNCLASSIFIED:
+        return _Measured()
+    circuit = evaluate(circuit_classifier(design), test_set, progress)
+    model = evaluate(model_classifier(design.model), test_set, progress)
+    return _Measured(
+        circuit.accuracy,
+        model.accuracy,
+        circuit.coverage,
+        tuple(map(tuple, circuit.confusion.sum(axis=0).tolist())),
+    )
+
+
+def _report(
+    name: str,
+    planned: Plan,
+    options: CompileOptions,
+    checked: Checked,
+    measured: _Measured,
+    clock: _Clock,
+) -> BuildReport:
+    design = planned.design
+    edges = _edges(planned, options)
+    figures = {part: PartFigures(**asdict(result.resources)) for part, result in checked.syntheses.items()}
+    yosys = find_yosys()
+    return BuildReport(
+        name=name,
+        target=design.target,
+        mode=design.mode,
+        parts=Parts(**figures),
+        count=OPTIONS,
+        device=XC7Z020.name,
+        utilisation=_utilisation(checked.syntheses),
+        minimised={
+            part: Minimised(
+                cubes_before=cover.cubes_before,
+                cubes_after=len(cover.cover.cubes),
+                literals_before=cover.literals_before,
+                literals_after=cover.cover.literals,
+            )
+            for part, cover in planned.covers.items()
+            if part in design.used
+        },
+        proof=Proof(checked.status, checked.method, checked.proof_seconds, checked.failure),
+        care=_care(design, measured.coverage),
+        edges=edges,
+        accuracy=measured.accuracy,
+        model_accuracy=measured.model_accuracy,
+        confusion=measured.confusion,
+        model=model_figures(design.model),
+        command=command(name, options),
+        evaluation=evaluation(name, options) if measured.accuracy is not None else None,
+        options={
+            **{
+                key: str(value) if isinstance(value, Path) else value
+                for key, value in asdict(options).items()
+            },
+            "target": design.target,
+            "edge_patterns": edges.patterns,
+            "mapping": {name: method for name, method in planned.methods.items() if name in design.used},
+            "simulated_vectors": checked.vectors,
+        },
+        hashes={"model": design.model.digest()},
+        tools={**{name: version(name) for name in GENERATORS}, yosys.name: yosys.version},
+        seconds={**clock.seconds, **checked.seconds},
+    )
+
+
+def _care(design: Design, coverage: float | None) -> Care:
+    if design.target in UNCLASSIFIED:
+        return Care()
+    care = design.specification.care
+    return Care(int(care.sum()), coverage, len(care))
+
+
+def _edges(planned: Plan, options: CompileOptions) -> EdgeFigures:
+    specification, agreement = planned.design.specification, planned.agreement
+    if not isinstance(specification, Specification) or "edge" not in planned.design.used:
+        return EdgeFigures()
+    edge_filter = specification.edge_filter
+    figures = EdgeFigures(edge_filter.name, edge_filter.size)
+    if agreement is None:
+        return figures
+    return replace(
+        figures,
+        precision=agreement.precision,
+        recall=agreement.recall,
+        f1=agreement.f1,
+        imagery=str(options.imagery),
+    )
+
+
+def _utilisation(syntheses: Mapping[str, Synthesis]) -> dict[str, dict[str, float]]:
+    shares = {part: asdict(utilisation(result.resources)) for part, result in syntheses.items()}
+    return {part: {k: v for k, v in share.items() if k != "device"} for part, share in shares.items()}

@@ -1,0 +1,85 @@
+"""Build folders: written beside their place, then renamed into it, so that a reader sees all or nothing."""
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from wnn2hdl.emit import MANIFEST_NAME
+from wnn2hdl.errors import InputError
+from wnn2hdl.files import make_folder
+
+REPORT_FILE = "report.json"
+REPORT_PAGE = "report.md"
+REPORT_HTML = "report.html"
+
+SAMPLE_FILE = "sample.png"
+"""The picture that `REPORT_HTML` shows through the circuit."""
+
+FAILED = "FAILED"
+"""The file that marks a build whose circuit is not the model; it says why."""
+
+
+@contextmanager
+def staged(target: Path) -> Iterator[Path]:
+    """A new folder that takes the place of ``target`` when the block ends without an error.
+
+    Args:
+        target: the folder to make; an earlier build there is replaced.
+
+    Yields:
+        the folder to write into, beside ``target``; it is removed if the block fails or is interrupted.
+
+    Raises:
+        InputError: ``target`` is something other than a build or an empty folder, or cannot be written.
+    """
+    require_replaceable(target)
+    make_folder(target.parent)
+    try:
+        staging = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    except OSError as error:
+        raise InputError(
+            "cannot write into the folder",
+            value=f"{target.parent} ({error.strerror})",
+            mend="choose another output folder",
+        ) from error
+    try:
+        staging.chmod(0o755)
+        yield staging
+        if target.exists():
+            shutil.rmtree(target)
+        staging.rename(target)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+
+
+def require_replaceable(target: Path) -> None:
+    """Raise InputError if something other than a build or an empty folder is where a build is to go."""
+    if target.exists() and not (target.is_dir() and (is_build(target) or not any(target.iterdir()))):
+        raise InputError(
+            "the output exists and is no earlier build", value=target, mend="choose another folder"
+        )
+
+
+def is_build(folder: Path) -> bool:
+    """Whether a folder was written by `compile`: its manifest tells it from any other."""
+    return (folder / MANIFEST_NAME).is_file()
+
+
+def failure(folder: Path) -> str | None:
+    """Why a build is marked as failed, on one line; None if it is not."""
+    path = folder / FAILED
+    if not path.exists():
+        return None
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        text = f"{FAILED} cannot be read ({error.strerror})"
+    return " ".join(text.split()) or f"{FAILED} gives no reason"
+
+
+def require_build(folder: Path) -> None:
+    """Raise InputError unless a folder is a build."""
+    if not is_build(folder):
+        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")

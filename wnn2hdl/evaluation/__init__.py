@@ -1,0 +1,1 @@
+"""How good a classifier is: classifiers of pictures, accuracy, measures and their intervals."""

@@ -1,1 +1,0 @@
-"""The one composer of stages: training, compiling, checking, evaluating."""

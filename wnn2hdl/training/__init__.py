@@ -1,0 +1,1 @@
+"""Training: discriminators on images, classifiers under a LUT budget, cross-validation."""

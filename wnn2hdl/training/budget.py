@@ -1,0 +1,250 @@
+"""Training that knows the cost: each method with its LUTs a pixel and its accuracy on unseen images."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.dataset import ColourHistogram, Dataset, colour_histogram
+from wnn2hdl.encode import high_bits
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, bits_to_codes, codes_to_bits
+from wnn2hdl.lower.table import care_set, pixel_table
+from wnn2hdl.minimise import map_luts
+from wnn2hdl.progress import Progress, reported
+from wnn2hdl.training.bitselect import MOST_LUTS, look_up_table, select_bits
+from wnn2hdl.training.crossval import Trainer, cross_validate
+from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
+
+ADDRESS_BITS = 4
+RAMS = 16
+BITS_PER_CHANNEL = 4
+"""The reference design's discriminators and pixel bits."""
+
+FINALISTS = 3
+"""The most accurate random mappings, whose circuits are made."""
+
+SATURATION = 0.9
+
+CARE_SHARES = (0.0, 1e-5, 1e-4, 1e-3)
+"""Share of the training pixels that a code must make up to be cared for; 0 for every code that occurs."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A classifier, what it costs and what it is worth.
+
+    Attributes:
+        luts: LUTs a pixel of its exact circuit, as mapped.
+        accuracy: share of the pixels right in cross-validation by image, 0 to 1.
+        method: how it was trained.
+        model: the same trained on all images.
+    """
+
+    luts: int
+    accuracy: float
+    method: str
+    model: WisardModel
+
+
+def train_under_budget(
+    dataset: Dataset, max_luts: int, *, trials: int, seed: int, progress: Progress
+) -> WisardModel:
+    """The most accurate classifier whose exact circuit takes at most ``max_luts`` LUTs a pixel.
+
+    Among equally accurate ones that with the fewest LUTs; it is trained on all images.
+
+    Args:
+        dataset: at least two images.
+        max_luts: the budget, at least 1.
+        trials: random mappings of the discriminators that are tried; 0 leaves them out.
+        seed: of all that is random.
+        progress: told of each image read and each candidate measured.
+
+    Raises:
+        InputError: the images cannot be used, or nothing fits.
+    """
+    if max_luts < 1:
+        raise InputError(
+            "a classifier takes at least one LUT a pixel", value=max_luts, mend="allow 1 or more"
+        )
+    points = measure(dataset, trials=trials, seed=seed, progress=progress, max_luts=max_luts)
+    fitting = [point for point in points if point.luts <= max_luts]
+    if not fitting:
+        raise InputError(
+            f"no classifier of at most {max_luts} LUTs a pixel was found",
+            value=f"{len(points)} candidates",
+            mend="allow more, or try more mappings",
+        )
+    best = max(fitting, key=lambda point: (point.accuracy, -point.luts))
+    figures = {"luts": best.luts, "cross_validated_accuracy": best.accuracy, "images": list(dataset.names)}
+    model = best.model
+    return WisardModel(
+        model.encoder,
+        model.classes,
+        model.mapping,
+        model.counts,
+        model.bleaching,
+        model.training | figures,
+    )
+
+
+def measure(
+    dataset: Dataset, *, trials: int, seed: int, progress: Progress, max_luts: int | None = None
+) -> tuple[Point, ...]:
+    """All candidates with their costs and accuracies, for `pareto_front` and the plot.
+
+    Candidates are bit selection at 1, 2 and 3 LUTs (for two classes), and of the `trials` random mappings of
+    the discriminators that do not saturate the `FINALISTS` most accurate: as exact circuits, and as circuits
+    that are free outside of a care set taken from the training images. What such a circuit answers outside is
+    part of the candidate, in cross-validation too: it becomes a plain look-up table.
+
+    Args:
+        dataset: at least two images; one is in memory at a time, and the colours of all.
+        trials: random mappings that are tried.
+        seed: of all that is random.
+        progress: told of each image read and each candidate measured.
+        max_luts: leaves out what is sure to cost more.
+
+    Raises:
+        InputError: the images cannot be used.
+    """
+    images = [
+        colour_histogram(image, len(dataset.classes))
+        for image in reported(dataset, "reading images", len(dataset), progress)
+    ]
+    methods = [*_bit_selections(images, dataset.classes, seed, max_luts)]
+    methods += _discriminators(images, dataset.classes, trials, seed, progress)
+    points = []
+    for name, train in reported(methods, "measuring candidates", len(methods), progress):
+        accuracy = cross_validate(images, train)
+        model = train(range(len(images)))
+        network = map_luts(pixel_table(model)).network
+        points.append(Point(len(network.luts), accuracy, name, model))
+    return tuple(points)
+
+
+def pareto_front(points: Iterable[Point]) -> tuple[Point, ...]:
+    """The points that no other equals or beats in both LUTs and accuracy, by rising LUTs."""
+    front: list[Point] = []
+    for point in sorted(points, key=lambda point: (point.luts, -point.accuracy)):
+        if not front or point.accuracy > front[-1].accuracy:
+            front.append(point)
+    return tuple(front)
+
+
+def _bit_selections(
+    images: Sequence[ColourHistogram], classes: tuple[str, ...], seed: int, max_luts: int | None
+) -> Iterator[tuple[str, Trainer]]:
+    if len(classes) != 2:
+        return
+    for luts in range(1, min(MOST_LUTS, max_luts or MOST_LUTS) + 1):
+
+        def train(chosen: Sequence[int], luts: int = luts) -> WisardModel:
+            return select_bits([images[i] for i in chosen], classes, luts=luts, seed=seed)
+
+        yield f"bit selection, {luts} LUT", train
+
+
+def _discriminators(
+    images: Sequence[ColourHistogram], classes: tuple[str, ...], trials: int, seed: int, progress: Progress
+) -> list[tuple[str, Trainer]]:
+    encoder = high_bits(BITS_PER_CHANNEL)
+    histograms = np.stack([code_histogram(image, encoder) for image in images])
+    ranked = []
+    for trial in reported(range(trials), "drawing mappings", trials, progress):
+        train = partial(train_discriminators, histograms, encoder, classes, seed + trial)
+        if not saturates(train(range(len(images)))):
+            ranked.append((-cross_validate(images, train), trial, train))
+    ranked.sort(key=lambda entry: entry[:2])
+    methods: list[tuple[str, Trainer]] = []
+    for _, trial, train in ranked[:FINALISTS]:
+        methods.append((f"WiSARD, seed {seed + trial}", train))
+        methods += [
+            (
+                f"WiSARD, seed {seed + trial}, codes of {share:g} of the pixels",
+                partial(train_circuit, histograms, train, share),
+            )
+            for share in CARE_SHARES
+        ]
+    return methods
+
+
+def code_histogram(image: ColourHistogram, encoder: BitSelect) -> NDArray[np.int64]:
+    """How often each code occurs in each class: int64 ``[classes, 2**width]``."""
+    codes = encoder.codes(image.pixels)
+    counts = [np.bincount(codes, row, 1 << encoder.width) for row in image.counts]
+    return np.stack(counts).astype(np.int64)
+
+
+def train_discriminators(
+    histograms: NDArray[np.int64],
+    encoder: BitSelect,
+    classes: tuple[str, ...],
+    seed: int,
+    chosen: Sequence[int],
+) -> WisardModel:
+    """Discriminators of the reference design's size with a random mapping.
+
+    Args:
+        histograms: int64 ``[images, classes, 2**width]``.
+        encoder: what made the codes.
+        classes: class names.
+        seed: of the mapping.
+        chosen: the images to train on and to choose the bleaching threshold by.
+    """
+    mapping = draw_mapping(encoder.width, RAMS, ADDRESS_BITS, seed)
+    threshold = choose_bleaching(histograms[list(chosen)], mapping)
+    return train_histogram(
+        histograms[list(chosen)].sum(axis=0),
+        encoder,
+        classes,
+        mapping,
+        threshold,
+        {"method": "discriminators", "seed": seed},
+    )
+
+
+def saturates(model: WisardModel) -> bool:
+    """Whether more than `SATURATION` of a discriminator's addresses fire: it says yes to nearly all."""
+    return bool((model.saturation.mean(axis=1) > SATURATION).any())
+
+
+def train_circuit(
+    histograms: NDArray[np.int64], train: Trainer, share: float, chosen: Sequence[int]
+) -> WisardModel:
+    """A model as its circuit in domain mode answers, a plain look-up table over the bits the circuit reads.
+
+    Args:
+        histograms: int64 ``[images, classes, 2**width]``.
+        train: makes the model.
+        share: as in `CARE_SHARES`.
+        chosen: the images to train on and to take the care set from.
+    """
+    model = train(chosen)
+    seen = histograms[list(chosen)].sum(axis=(0, 1))
+    care = care_set(seen, max(1, int(np.ceil(share * seen.sum()))))
+    # Made anew in every fold, so quickly; the table it becomes is mapped with more effort.
+    network = map_luts(pixel_table(model, care), effort=0).network
+    return circuit_model(model, network, {"care_share": share})
+
+
+def circuit_model(model: WisardModel, network: LutNetwork, training: dict[str, float]) -> WisardModel:
+    """A network made of a pixel model, as a model of its own.
+
+    Args:
+        model: a pixel model.
+        network: its circuit, with the outputs of `pixel_table`.
+        training: what to note beside the model's own notes.
+    """
+    read = {name for lut in network.luts for name in lut.inputs} | {mux.select for mux in network.muxes}
+    read |= {signal for _, signal in network.outputs}
+    # A constant circuit reads nothing, and a model reads one bit at least.
+    kept = [x for x, name in enumerate(network.inputs) if name in read] or [0]
+    codes = codes_to_bits(np.arange(1 << len(kept)), len(kept)) @ (1 << np.array(kept))
+    # Outside of the care set a circuit of several outputs may name a class that does not exist.
+    answers = np.minimum(bits_to_codes(network.evaluate(codes)), len(model.classes) - 1)
+    encoder = BitSelect(tuple(model.encoder.names[x] for x in kept))
+    return look_up_table(encoder, model.classes, answers, model.training | training)

@@ -1,0 +1,107 @@
+"""From labelled images to a trained model."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.dataset import Dataset, LabelledImage
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect, WisardModel
+from wnn2hdl.progress import Progress, reported
+from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
+
+
+def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
+    """How often each code occurs, by image and class: int64 ``[images, classes, 2**width]``.
+
+    One image is in memory at a time; the cost grows with the pixels.
+
+    Raises:
+        InputError: the encoder is too wide for a table, an image cannot be read, or a class has no pixel.
+    """
+    if encoder.width > MAX_TABLE_INPUTS:
+        raise InputError(
+            "too many input bits for one truth table",
+            value=encoder.width,
+            mend=f"choose at most {MAX_TABLE_INPUTS}",
+        )
+    shape = (len(dataset.classes), 1 << encoder.width)
+    histograms = np.zeros((len(dataset), *shape), dtype=np.int64)
+    for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
+        histograms[position] = _histogram(image, encoder, shape)
+    for name, pixels in zip(dataset.classes, histograms.sum(axis=(0, 2)), strict=True):
+        if pixels == 0:
+            raise InputError(
+                f"no training pixel is labelled {name}",
+                value=f"{len(dataset)} images",
+                mend="add images that show every class",
+            )
+    return histograms
+
+
+def train(
+    dataset: Dataset,
+    encoder: BitSelect,
+    *,
+    address_bits: int,
+    rams: int,
+    bleaching: int | None,
+    balanced: bool = False,
+    seed: int,
+    progress: Progress,
+) -> WisardModel:
+    """Train RAM discriminators on a data set.
+
+    Args:
+        dataset: the training images.
+        encoder: which pixel bits the network reads.
+        address_bits: n, address bits of a RAM.
+        rams: k, RAMs of a discriminator.
+        bleaching: the threshold; None chooses it by cross-validation by image, on these images alone.
+        balanced: count the pixels of every class as many times as makes all classes alike. Without it one
+            bleaching threshold serves frequent classes and silences rare ones.
+        seed: of the tuple mapping.
+        progress: told of each image read.
+
+    Raises:
+        InputError: the images cannot be used, or n does not fit the encoder.
+    """
+    mapping = draw_mapping(encoder.width, rams, address_bits, seed)
+    histograms = image_histograms(dataset, encoder, progress)
+    pixels = int(histograms.sum())
+    if balanced:
+        histograms = _balanced(histograms)
+    threshold = choose_bleaching(histograms, mapping) if bleaching is None else bleaching
+    training = {
+        "seed": seed,
+        "images": list(dataset.names),
+        "pixels": pixels,
+        "bleaching": "auto" if bleaching is None else "given",
+        "balanced": balanced,
+    }
+    return train_histogram(histograms.sum(axis=0), encoder, dataset.classes, mapping, threshold, training)
+
+
+def _balanced(histograms: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Histograms whose classes all have about as many counts as the largest of them."""
+    totals = histograms.sum(axis=(0, 2))
+    shares = totals.max() / totals
+    return np.asarray(np.rint(histograms * shares[None, :, None]), dtype=np.int64)
+
+
+def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> WisardModel:
+    """The model with a memory of the colours of its training images; these are read once more.
+
+    Raises:
+        InputError: an image cannot be read.
+    """
+    seen = np.zeros(1 << COLOURS.width, dtype=np.bool_)
+    for image in reported(dataset, "noting colours", len(dataset), progress):
+        seen[COLOURS.codes(image.pixels)] = True
+    return replace(model, colours=np.flatnonzero(seen))
+
+
+def _histogram(image: LabelledImage, encoder: BitSelect, shape: tuple[int, int]) -> NDArray[np.int64]:
+    cells = image.labels.astype(np.int64) * shape[1] + encoder.codes(image.pixels)
+    return np.bincount(cells, minlength=shape[0] * shape[1]).reshape(shape)

@@ -1,0 +1,74 @@
+"""Training of models that look at a pixel's neighbours."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.dataset import Dataset, LabelledImage
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import WisardModel
+from wnn2hdl.progress import Progress, reported
+from wnn2hdl.training.bitselect import LEAST_SHARE, LUTS, main_drift, select_neighbourhood
+
+WINDOWS = 8000
+"""Windows drawn from each image, wherever they lie wholly inside; more changed little."""
+
+
+def train_neighbourhood(
+    dataset: Dataset, size: int, *, max_luts: int | None, seed: int, progress: Progress
+) -> WisardModel:
+    """The classifier that reads six tables over the window around a pixel by one LUT.
+
+    Args:
+        dataset: images of which every pixel is labelled; one is in memory at a time.
+        size: rows and columns of the window, 3 or 5.
+        max_luts: how many LUTs the user allows; None sets no limit.
+        seed: of the windows drawn and of the search.
+        progress: told of each image read and each table chosen.
+
+    Raises:
+        InputError: an image cannot be read, is smaller than a window or labelled in part only, a class has no
+            pixel, there are not two classes, or more LUTs are needed.
+    """
+    if max_luts is not None and max_luts < LUTS:
+        raise InputError(
+            f"a neighbourhood takes {LUTS} LUTs",
+            value=f"{max_luts} allowed",
+            mend="allow more, or train without --neighbourhood",
+        )
+    windows, labels, means = [], [], []
+    for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
+        drawn = _draw(image, size, np.random.default_rng([seed, position]))
+        windows.append(drawn[0])
+        labels.append(drawn[1])
+        background = image.pixels[image.labels == 0]
+        if len(background) > LEAST_SHARE * len(image.pixels):
+            means.append(background.mean(axis=0))
+    model = select_neighbourhood(
+        np.concatenate(windows),
+        np.concatenate(labels),
+        main_drift(np.array(means)),
+        dataset.classes,
+        seed=seed,
+        progress=lambda done, total: progress("choosing tables", done, total),
+    )
+    model.training["images"] = list(dataset.names)
+    return model
+
+
+def _draw(
+    image: LabelledImage, size: int, rng: np.random.Generator
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Windows, uint8 ``[WINDOWS, size, size, 3]``, and the classes of their middles, uint8 ``[WINDOWS]``."""
+    picture, labels = image.picture, image.label_picture
+    height, width = labels.shape
+    if min(height, width) < size:
+        raise InputError(
+            "an image is smaller than the neighbourhood",
+            value=f"{image.name} of {width}x{height} pixels",
+            mend="give larger ones",
+        )
+    rows = rng.integers(height - size + 1, size=WINDOWS)
+    columns = rng.integers(width - size + 1, size=WINDOWS)
+    reach = np.arange(size)
+    windows = picture[(rows[:, None] + reach)[:, :, None], (columns[:, None] + reach)[:, None, :]]
+    return windows, labels[rows + size // 2, columns + size // 2]
