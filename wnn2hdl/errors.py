@@ -1,4 +1,4 @@
-"""The errors a user can cause: each names the fault, the value at fault and the mend, on one line."""
+"""The errors a user can cause: each names the fault, the value at fault and the hint, on one line."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,16 +14,16 @@ class Wnn2hdlError(Exception):
 
     exit_status = 2
 
-    def __init__(self, fault: str, *, value: object = None, mend: str = "") -> None:
+    def __init__(self, fault: str, *, value: object = None, hint: str = "") -> None:
         self.fault = fault
         self.value = value
-        self.mend = mend
+        self.hint = hint
         super().__init__(self.line())
 
     def line(self) -> str:
-        """The one line a user sees: ``fault: value; mend``."""
+        """The one line a user sees: ``fault: value; hint``."""
         text = self.fault if self.value is None else f"{self.fault}: {self.value}"
-        text = f"{text}; {self.mend}" if self.mend else text
+        text = f"{text}; {self.hint}" if self.hint else text
         return " ".join(text.split())
 
 
@@ -36,7 +36,7 @@ class ModelFileError(InputError):
 
 
 class ExtraMissingError(Wnn2hdlError):
-    """An optional package is needed; the mend names the extra to install."""
+    """An optional package is needed; the hint names the extra to install."""
 
 
 @contextmanager
@@ -53,7 +53,7 @@ def extra_needed(extra: str, need: str) -> Iterator[None]:
     try:
         yield
     except ImportError as error:
-        raise ExtraMissingError(need, mend=f"install it with: pip install 'wnn2hdl[{extra}]'") from error
+        raise ExtraMissingError(need, hint=f"install it with: pip install 'wnn2hdl[{extra}]'") from error
 
 
 class ToolError(Wnn2hdlError):
@@ -65,9 +65,9 @@ class ToolError(Wnn2hdlError):
     """
 
     def __init__(
-        self, fault: str, *, value: object = None, mend: str = "", command: str = "", output: str = ""
+        self, fault: str, *, value: object = None, hint: str = "", command: str = "", output: str = ""
     ) -> None:
-        super().__init__(fault, value=value, mend=mend)
+        super().__init__(fault, value=value, hint=hint)
         self.command = command
         self.output = output
 

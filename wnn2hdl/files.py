@@ -25,7 +25,7 @@ def write_text(path: Path, text: str) -> None:
     except UnicodeEncodeError as error:
         wrong = ascii(error.object[error.start : error.end])
         raise InputError(
-            "cannot write this as UTF-8", value=f"{wrong} in {path}", mend="rename what has it in its name"
+            "cannot write this as UTF-8", value=f"{wrong} in {path}", hint="rename what has it in its name"
         ) from error
     write_bytes(path, content)
 
@@ -38,7 +38,7 @@ def write_bytes(path: Path, content: bytes) -> None:
         raise InputError(
             "cannot write",
             value=f"{path} ({error.strerror})",
-            mend="choose a folder you may write to, with room in it",
+            hint="choose a folder you may write to, with room in it",
         ) from error
 
 
@@ -78,7 +78,7 @@ def open_alone(path: Path, what: str, flags: int = 0) -> int:
     except OSError as error:
         os.close(file)
         raise InputError(
-            f"another {what} is writing to the same folder", value=path.parent, mend="choose another one"
+            f"another {what} is writing to the same folder", value=path.parent, hint="choose another one"
         ) from error
     return file
 
@@ -93,10 +93,10 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            "cannot make the folder", value=f"{path} ({error.strerror})", mend="choose another one"
+            "cannot make the folder", value=f"{path} ({error.strerror})", hint="choose another one"
         ) from error
     if not os.access(path, os.W_OK):
-        raise InputError("cannot write into the folder", value=path, mend="choose another one")
+        raise InputError("cannot write into the folder", value=path, hint="choose another one")
 
 
 @contextmanager
@@ -135,7 +135,7 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
         raise ModelFileError(
             f"not {what}, or a damaged one",
             value=f"{path} ({error})",
-            mend="give the JSON file as it was saved",
+            hint="give the JSON file as it was saved",
         ) from error
     if not isinstance(data, dict):
         raise ModelFileError(f"not {what}", value=f"{path} (holds a JSON {type(data).__name__})")

@@ -11,14 +11,14 @@ from wnn2hdl.errors import (
 
 
 def test_a_line_names_fault_value_and_mend() -> None:
-    error = InputError("no such pixel bit", value="X9", mend="use R, G or B")
+    error = InputError("no such pixel bit", value="X9", hint="use R, G or B")
     assert str(error) == "no such pixel bit: X9; use R, G or B"
 
 
 def test_value_and_mend_may_be_missing() -> None:
     assert str(InputError("the folder is empty")) == "the folder is empty"
     assert str(InputError("too few", value=0)) == "too few: 0"
-    assert str(InputError("too few", mend="give more")) == "too few; give more"
+    assert str(InputError("too few", hint="give more")) == "too few; give more"
 
 
 def test_line_breaks_of_a_value_do_not_break_the_line() -> None:

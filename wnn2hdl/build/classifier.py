@@ -24,7 +24,7 @@ def open_classifier(path: Path) -> PictureClassifier:
         InputError: the folder is no build or a failed one, or the model reads no pixels.
     """
     if reason := failure(path):
-        raise InputError(f"the build failed: {reason}", value=path, mend="compile the model again")
+        raise InputError(f"the build failed: {reason}", value=path, hint="compile the model again")
     if path.is_dir():
         design = open_build(path)[0]
         return replace(circuit_classifier(design), colours=familiar_colours(design.model))

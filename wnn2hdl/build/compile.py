@@ -129,7 +129,7 @@ def require_luts(build: Build, max_luts: int) -> None:
         raise CheckError(
             f"the {build.report['target']} takes more LUTs than allowed",
             value=f"{luts}, allowed are {max_luts}",
-            mend="try domain mode, another model or more --effort",
+            hint="try domain mode, another model or more --effort",
         )
 
 
@@ -138,11 +138,11 @@ def _test_set(options: CompileOptions) -> Dataset | None:
     if options.test_images is None or options.test_masks is None:
         if options.test_images or options.test_masks:
             raise InputError(
-                "these options go together", value="--test-images and --test-masks", mend="give both"
+                "these options go together", value="--test-images and --test-masks", hint="give both"
             )
         if options.palette:
             raise InputError(
-                "a palette belongs to masks", value=options.palette, mend="give --test-masks too"
+                "a palette belongs to masks", value=options.palette, hint="give --test-masks too"
             )
         return None
     palette = Palette.read(options.palette) if options.palette else None

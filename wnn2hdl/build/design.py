@@ -103,10 +103,10 @@ class Design:
         path = folder / DESIGN_FILE
         data = read_json(path, "a design")
         if data.get("format") != FORMAT or data.get("version") != VERSION:
-            raise ModelFileError("not a design of this wnn2hdl", value=path, mend="compile the model again")
+            raise ModelFileError("not a design of this wnn2hdl", value=path, hint="compile the model again")
         if data.get("model_sha256") != model.digest():
             raise ModelFileError(
-                "the design was made from another model", value=path, mend="compile the model again"
+                "the design was made from another model", value=path, hint="compile the model again"
             )
         try:
             specification = _specification(model, data)

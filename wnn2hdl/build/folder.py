@@ -42,7 +42,7 @@ def staged(target: Path) -> Iterator[Path]:
         raise InputError(
             "cannot write into the folder",
             value=f"{target.parent} ({error.strerror})",
-            mend="choose another output folder",
+            hint="choose another output folder",
         ) from error
     try:
         staging.chmod(0o755)
@@ -58,7 +58,7 @@ def require_replaceable(target: Path) -> None:
     """Raise InputError if something other than a build or an empty folder is where a build is to go."""
     if target.exists() and not (target.is_dir() and (is_build(target) or not any(target.iterdir()))):
         raise InputError(
-            "the output exists and is no earlier build", value=target, mend="choose another folder"
+            "the output exists and is no earlier build", value=target, hint="choose another folder"
         )
 
 
@@ -82,4 +82,4 @@ def failure(folder: Path) -> str | None:
 def require_build(folder: Path) -> None:
     """Raise InputError unless a folder is a build."""
     if not is_build(folder):
-        raise InputError("not a build folder", value=folder, mend="give one that `wnn2hdl compile` wrote")
+        raise InputError("not a build folder", value=folder, hint="give one that `wnn2hdl compile` wrote")

@@ -108,14 +108,14 @@ def _target(model: WisardModel, options: CompileOptions) -> Target:
             raise InputError(
                 "the model does not look at neighbours",
                 value="target neighbourhood",
-                mend="train one with --neighbourhood, or choose another target",
+                hint="train one with --neighbourhood, or choose another target",
             )
         return options.target or "block"
     if options.target not in (None, "neighbourhood"):
         raise InputError(
             "the model looks at neighbours, so it is a circuit of its own",
             value=f"target {options.target}",
-            mend="leave --target out",
+            hint="leave --target out",
         )
     return "neighbourhood"
 
@@ -148,7 +148,7 @@ def _specify_neighbourhood(
 def _care_imagery(options: CompileOptions) -> Path:
     if options.care is None:
         raise InputError(
-            "domain mode needs imagery that tells which codes occur", mend="give a folder with --care"
+            "domain mode needs imagery that tells which codes occur", hint="give a folder with --care"
         )
     return options.care
 
@@ -161,7 +161,7 @@ def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress
     if options.edges == "learned":
         if options.imagery is None:
             raise InputError(
-                "learned edge patterns need imagery to learn from", mend="give a folder with --edge-images"
+                "learned edge patterns need imagery to learn from", hint="give a folder with --edge-images"
             )
         return learn_edges(model, options.imagery, options.edge_patterns, options.edge_luts, progress)
     return from_file(Path(options.edges))

@@ -75,7 +75,7 @@ def play(
         )
     if vcd is not None and simulator != "amaranth":
         raise InputError(
-            "waves are recorded by Amaranth's simulator only", value=simulator, mend="leave --vcd out"
+            "waves are recorded by Amaranth's simulator only", value=simulator, hint="leave --vcd out"
         )
     rgb = read_rgb(picture)
     specification = design.specification
@@ -123,7 +123,7 @@ def _neighbourhood_answers(
     cared = specification.care[codes]
     model = specification.evaluate("neighbourhood", inputs)
     if (answers["class_bits"] != model["class_bits"])[cared].any():
-        raise CheckError("the mapped LUTs differ from the model", mend="compile the model again")
+        raise CheckError("the mapped LUTs differ from the model", hint="compile the model again")
     return inputs, answers, float(cared.mean())
 
 
@@ -152,7 +152,7 @@ def _block_answers(
         matters = inside_window if port == "edge_bit" else np.ones(len(values), dtype=np.bool_)
         if (answers[port][inside] != values)[matters].any():
             raise CheckError(
-                f"the mapped LUTs differ from the model in {port}", mend="compile the model again"
+                f"the mapped LUTs differ from the model in {port}", hint="compile the model again"
             )
     return inputs, answers, float(cared.mean())
 

@@ -108,7 +108,7 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
     places = [folder.resolve() for folder in folders]
     for folder, place in zip(folders, places, strict=True):
         if places.count(place) > 1:
-            raise InputError("a build is given twice", value=folder, mend="name it once")
+            raise InputError("a build is given twice", value=folder, hint="name it once")
         _require_utf8(place)
     names = Counter(place.name for place in places)
     entries = []
@@ -129,7 +129,7 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
 def _require_utf8(folder: Path) -> None:
     shown = os.fsencode(folder).decode(errors="backslashreplace")
     if shown != str(folder):
-        raise InputError("the name of a folder is no UTF-8", value=shown, mend="rename it")
+        raise InputError("the name of a folder is no UTF-8", value=shown, hint="rename it")
 
 
 def model_figures(model: WisardModel) -> ModelFigures:

@@ -96,6 +96,6 @@ def compile_command(
         build = compile_model(WisardModel.load(model), output, options, report)
     emit(build.report, parts_table(build.report, build.folder), as_json=as_json)
     if build.failure is not None:
-        raise CheckError("the circuit is not the model", value=build.failure, mend=f"see {build.folder}")
+        raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
     if max_luts is not None:
         require_luts(build, max_luts)

@@ -59,7 +59,7 @@ def demo_command(output: Path, seed: int, as_json: bool) -> None:
     emit(data, "\n\n".join(lines), as_json=as_json)
     for build in (demo.reference, demo.smallest):
         if build.failure is not None:
-            raise CheckError("the circuit is not the model", value=build.failure, mend=f"see {build.folder}")
+            raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
 
 
 def _flight_table(flight: dict[str, Any]) -> str:

@@ -22,7 +22,7 @@ def doctor_command(as_json: bool) -> None:
     \b
     Examples:
       wnn2hdl doctor
-      wnn2hdl doctor --json | jq '.parts[] | select(.found == null) | .mend'
+      wnn2hdl doctor --json | jq '.parts[] | select(.found == null) | .hint'
     """
     parts = tuple(inventory())
     lacking = [part for part in parts if part.needed and part.found is None]
@@ -30,7 +30,7 @@ def doctor_command(as_json: bool) -> None:
     emit(data, _table(parts), as_json=as_json)
     if lacking:
         raise CheckError(
-            "a tool is missing that compiling needs", value=lacking[0].name, mend=lacking[0].mend or ""
+            "a tool is missing that compiling needs", value=lacking[0].name, hint=lacking[0].hint or ""
         )
 
 
@@ -39,7 +39,7 @@ def _table(parts: tuple[Part, ...]) -> str:
     table.add_column("found, or how to get it", overflow="fold")
     for part in parts:
         mark = "ok" if part.found else "MISSING" if part.needed else "-"
-        table.add_row(mark, part.name, part.purpose, part.found or f"{part.fault}; {part.mend}")
+        table.add_row(mark, part.name, part.purpose, part.found or f"{part.fault}; {part.hint}")
     console = Console(width=get_terminal_size((140, 24)).columns, markup=False)
     with console.capture() as captured:
         console.print(table)

@@ -102,11 +102,11 @@ def evaluate_command(
             data, text = _with_masks(parts, dataset, votes, seed, report)
         else:
             if chips is None or tags is None:
-                raise InputError("these options go together", value="--chips and --tags", mend="give both")
+                raise InputError("these options go together", value="--chips and --tags", hint="give both")
             if images or masks or palette or square:
                 raise InputError(
                     "chips with tags have no masks and no squares",
-                    mend="leave --images, --masks, --palette and --square out",
+                    hint="leave --images, --masks, --palette and --square out",
                 )
             data, text = _with_tags(parts, chips, tags, seed, report)
     bootstrap = {"method": METHOD, "confidence": CONFIDENCE, "seed": seed}
@@ -123,7 +123,7 @@ def _parts(model: Path) -> tuple[dict[str, PictureClassifier], dict[str, str]]:
         raise InputError(
             "the build holds no classifier, so there is nothing to measure",
             value=f"{model} (target {report['target']})",
-            mend="give its model.json, or a build of another target",
+            hint="give its model.json, or a build of another target",
         )
     parts = {"circuit": open_classifier(model), "model": open_classifier(model / MODEL_FILE)}
     return parts, {"mode": report["mode"]}

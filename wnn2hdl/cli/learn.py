@@ -64,7 +64,7 @@ class Discriminators:
             raise InputError(
                 f"{because} chooses the classifier itself",
                 value=" ".join(given),
-                mend="leave these options out",
+                hint="leave these options out",
             )
 
 
@@ -142,7 +142,7 @@ def train_command(
         if pareto:
             options.require_none("--pareto")
             if neighbourhood is not None:
-                raise InputError("--pareto compares pixel classifiers", mend="leave --neighbourhood out")
+                raise InputError("--pareto compares pixel classifiers", hint="leave --neighbourhood out")
             points = measure(dataset, trials=trials, seed=seed, progress=report, max_luts=max_luts)
             model = max(pareto_front(points), key=lambda point: point.accuracy).model
         elif neighbourhood is not None:

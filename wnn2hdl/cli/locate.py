@@ -142,7 +142,7 @@ def locate_command(
         searches["map"] = None
     if calibrate_frames and not isinstance(calibration, Path):
         raise InputError(
-            "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, mend="give both"
+            "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, hint="give both"
         )
     with made_folder(output), progress() as report:
         if map_file and frames and poses_file:
@@ -155,7 +155,7 @@ def locate_command(
                 raise InputError(
                     "the embedded flight has no file of poses",
                     value=calibration,
-                    mend="give a count to --calibrate",
+                    hint="give a count to --calibrate",
                 )
             report("flight", 0, 1)
             recording = Recording.embedded(seed)
@@ -193,19 +193,19 @@ def _divided(
     )
     if not scored:
         raise InputError(
-            "no frame is left to score", value=calibration, mend="calibrate on other frames than --poses has"
+            "no frame is left to score", value=calibration, hint="calibrate on other frames than --poses has"
         )
     return scored, calibrating
 
 
 def _camera(path: Path | None, focal: float | None) -> Camera | float:
     if path and focal:
-        raise InputError("--camera and --focal both tell the focal length", mend="give one of them")
+        raise InputError("--camera and --focal both tell the focal length", hint="give one of them")
     if path:
         return Camera.read(path)
     if focal:
         return focal
-    raise InputError("nothing is known of the camera", mend="give --camera CAMERA.toml or --focal PIXELS")
+    raise InputError("nothing is known of the camera", hint="give --camera CAMERA.toml or --focal PIXELS")
 
 
 def _refuse_halves(given: dict[str, Path | None], camera: dict[str, object]) -> None:
@@ -213,12 +213,12 @@ def _refuse_halves(given: dict[str, Path | None], camera: dict[str, object]) -> 
     missing = [name for name, value in given.items() if value is None]
     if len(missing) < len(given):
         raise InputError(
-            "these options go together", value=", ".join(given), mend=f"give {', '.join(missing)}"
+            "these options go together", value=", ".join(given), hint=f"give {', '.join(missing)}"
         )
     told = [name for name, value in camera.items() if value is not None]
     if told:
         raise InputError(
             "the embedded flight has its own camera",
             value=" ".join(told),
-            mend=f"drop it, or give {missing[0]}",
+            hint=f"drop it, or give {missing[0]}",
         )

@@ -89,13 +89,13 @@ def labelled(
     given = [name for name, pair in pairs.items() if any(pair)]
     for name in given:
         if not all(pairs[name]):
-            raise InputError("these options go together", value=name, mend="give both")
+            raise InputError("these options go together", value=name, hint="give both")
     if len(given) == 2:
-        raise InputError("two sources of labelled pixels", value=" / ".join(given), mend="give one of them")
+        raise InputError("two sources of labelled pixels", value=" / ".join(given), hint="give one of them")
     if images and masks:
         return from_masks(images, masks, Palette.read(palette) if palette else None)
     if palette:
-        raise InputError("a palette belongs to masks", value=palette, mend="give --images and --masks too")
+        raise InputError("a palette belongs to masks", value=palette, hint="give --images and --masks too")
     if regions and chips:
         return from_regions(regions, chips, seed=seed)
     return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed)

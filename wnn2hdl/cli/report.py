@@ -100,13 +100,13 @@ def report_command(
     limited = baseline is not None or max_luts is not None or min_accuracy is not None
     if record is not None and (limited or form != "html"):
         raise InputError(
-            "--write-baseline takes builds as they are", mend="run the gate in a command of its own"
+            "--write-baseline takes builds as they are", hint="run the gate in a command of its own"
         )
     if max_regress is not None and baseline is None:
-        raise InputError("--max-regress is measured from a baseline", mend="give --baseline too")
+        raise InputError("--max-regress is measured from a baseline", hint="give --baseline too")
     if as_json and form != "html" and output is None:
         raise InputError(
-            "two outputs on stdout", value=f"--json and --format {form}", mend="name a file with -o"
+            "two outputs on stdout", value=f"--json and --format {form}", hint="name a file with -o"
         )
     folders = _folders(builds)
     if form == "html" and output is None and record is None and len(folders) > 1:
@@ -149,7 +149,7 @@ def _folders(paths: Sequence[Path]) -> list[Path]:
     folders = [path for path in paths if is_build(path)]
     others = " ".join(str(path) for path in paths if path not in folders)
     if not folders:
-        raise InputError("no build among these", value=others, mend="see `wnn2hdl compile`")
+        raise InputError("no build among these", value=others, hint="see `wnn2hdl compile`")
     if others:
         click.echo(f"wnn2hdl: passed over, since it is no build: {others}", err=True)
     return folders
@@ -161,7 +161,7 @@ def _require_own(index: Path) -> None:
         raise InputError(
             "there is a page that `wnn2hdl report` did not make",
             value=index,
-            mend="name another file, or this one, with -o",
+            hint="name another file, or this one, with -o",
         )
 
 

@@ -129,11 +129,11 @@ def scan_command(
       wnn2hdl scan model.json 2024.tif --before 2023.tif --minimum-area 1 --vector gpkg -o build/change
     """
     if minimum_area is not None and minimum_pixels is not None:
-        raise InputError("--minimum-area and --minimum-pixels say the same", mend="give one of them")
+        raise InputError("--minimum-area and --minimum-pixels say the same", hint="give one of them")
     if before_mask and not before:
-        raise InputError("--before-mask is the mask of --before", value=before_mask, mend="give both")
+        raise InputError("--before-mask is the mask of --before", value=before_mask, hint="give both")
     if scheduler and jobs:
-        raise InputError("--jobs is for this machine, --scheduler for others", mend="give one of them")
+        raise InputError("--jobs is for this machine, --scheduler for others", hint="give one of them")
     options = ScanOptions(
         Reading(bands, scale, mask),
         Method(square, share, seed, smooth),

@@ -165,7 +165,7 @@ def sweep_command(
     if best:
         if outcome.decision is None:
             raise InputError(
-                "no trial is valid", value=f"{len(plan)} trials", mend="see their errors in trials.csv"
+                "no trial is valid", value=f"{len(plan)} trials", hint="see their errors in trials.csv"
             )
         trial = find_trial(plan, where, outcome.decision.chosen.best.name)
         _write_model(sets, trial, model_file, as_json=as_json)
@@ -181,15 +181,15 @@ def sweep_command(
 def _places(output: Path | None, results: Path | None, *, best: bool, name: str | None) -> tuple[Path, Path]:
     """The sweep's folder and, where one is wanted, the model file."""
     if best and name is not None:
-        raise InputError("--best and --trial name different models", mend="give one of them")
+        raise InputError("--best and --trial name different models", hint="give one of them")
     if not best and name is None:
         if results is not None:
-            raise InputError("--results goes with --best or --trial", mend="name the sweep's folder with -o")
+            raise InputError("--results goes with --best or --trial", hint="name the sweep's folder with -o")
         return output or DEFAULT_FOLDER, Path()
     if output is None:
-        raise InputError("there is no place for the model", mend="name its file with -o MODEL.json")
+        raise InputError("there is no place for the model", hint="name its file with -o MODEL.json")
     if output.is_dir():
-        raise InputError("the model file is a folder", value=output, mend="name a file, as in -o MODEL.json")
+        raise InputError("the model file is a folder", value=output, hint="name a file, as in -o MODEL.json")
     return results or DEFAULT_FOLDER, output
 
 
@@ -197,7 +197,7 @@ def _write_model(sets: PixelSets, trial: Trial, path: Path, *, as_json: bool) ->
     record = run_trial(sets, trial)
     if record.status == "failed":
         raise InputError(
-            "the trial failed", value=f"{trial.name} ({record.error})", mend="choose another one"
+            "the trial failed", value=f"{trial.name} ({record.error})", hint="choose another one"
         )
     replace(rebuild(sets, trial), colours=seen_colours(sets)).save(path)
     text = (

@@ -53,7 +53,7 @@ def training_histogram(dataset: Dataset) -> ColourHistogram:
         raise InputError(
             f"no training pixel is labelled {' or '.join(empty)}",
             value=f"{len(dataset)} images",
-            mend="add images that show every class",
+            hint="add images that show every class",
         )
     return total
 

@@ -51,7 +51,7 @@ class LabelledImage:
             raise InputError(
                 "only some pixels of the image are labelled, and neighbours are needed",
                 value=self.name,
-                mend="give pictures with masks",
+                hint="give pictures with masks",
             )
         return self.shape
 
@@ -94,7 +94,7 @@ def folds(names: Iterable[str], count: int) -> tuple[tuple[tuple[str, ...], tupl
     if not 2 <= count <= len(ordered):
         raise InputError(
             f"{len(ordered)} images cannot be split into {count} folds",
-            mend=f"choose from 2 to {len(ordered)}",
+            hint=f"choose from 2 to {len(ordered)}",
         )
     return tuple(
         (
@@ -118,7 +118,7 @@ def split(names: Iterable[str], test: int) -> tuple[tuple[str, ...], tuple[str, 
     if not 1 <= test < len(ordered):
         raise InputError(
             f"{test} of {len(ordered)} images cannot be held out for the test",
-            mend="leave at least one image on each side",
+            hint="leave at least one image on each side",
         )
     held = {(2 * i + 1) * len(ordered) // (2 * test) for i in range(test)}
     return (

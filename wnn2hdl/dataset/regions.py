@@ -111,18 +111,18 @@ def _read_regions(path: Path, chips: Path) -> dict[str, list[Region]]:
         if chip not in sizes:
             if Path(chip).name != chip or not (chips / chip).is_file():
                 raise InputError(
-                    f"{where}: no such chip in {chips}", value=repr(chip), mend="correct its name"
+                    f"{where}: no such chip in {chips}", value=repr(chip), hint="correct its name"
                 )
             sizes[chip] = picture_size(chips / chip)
         if label not in CLASSES:
-            raise InputError(f"{where}: unknown label", value=repr(label), mend=f"use {' or '.join(CLASSES)}")
+            raise InputError(f"{where}: unknown label", value=repr(label), hint=f"use {' or '.join(CLASSES)}")
         region = Region(
             line, CLASSES.index(label), *(_whole_number(cells, name, where) for name in REGION_COLUMNS[2:])
         )
         _check_region(region, sizes[chip], by_chip.setdefault(chip, []), where)
         by_chip[chip].append(region)
     if not by_chip:
-        raise InputError("the file of regions has no rows", value=path, mend="add a labelled rectangle")
+        raise InputError("the file of regions has no rows", value=path, hint="add a labelled rectangle")
     return by_chip
 
 
@@ -136,7 +136,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
                 raise InputError(
                     "the file of regions has other columns",
                     value=f"{path} ({','.join(columns)})",
-                    mend=f"its first line should be {','.join(REGION_COLUMNS)}",
+                    hint=f"its first line should be {','.join(REGION_COLUMNS)}",
                 )
             reader.fieldnames = columns
             for cells in reader:
@@ -166,11 +166,11 @@ def _check_region(region: Region, size: tuple[int, int], earlier: list[Region], 
         raise InputError(
             f"{where}: the rectangle reaches outside the picture of {width}x{height} pixels",
             value=f"x {region.x}, y {region.y}, {region.width}x{region.height}",
-            mend="correct it",
+            hint="correct it",
         )
     for other in earlier:
         if other.label != region.label and other.overlaps(region):
             raise InputError(
                 f"{where}: the rectangle overlaps that of row {other.row}, which has another label",
-                mend="make them disjoint",
+                hint="make them disjoint",
             )

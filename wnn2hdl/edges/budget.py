@@ -118,7 +118,7 @@ def learned_under_budget(
             picture.
     """
     if not 1 <= luts <= MOST_LUTS:
-        raise InputError("an edge filter is learned for 1 to 3 LUTs", value=luts, mend="choose 1, 2 or 3")
+        raise InputError("an edge filter is learned for 1 to 3 LUTs", value=luts, hint="choose 1, 2 or 3")
     if count is not None and not 1 <= count <= MOST_PATTERNS:
         raise InputError(f"an edge filter has 1 to {MOST_PATTERNS} patterns", value=count)
     evidence = gather(pictures)
@@ -140,7 +140,7 @@ def learned_under_budget(
         raise InputError(
             f"no edge filter of {luts} LUTs was found that holds so many patterns",
             value=count,
-            mend="ask for more LUTs or another number of patterns",
+            hint="ask for more LUTs or another number of patterns",
         )
     return EdgeFilter(f"learned-{luts}-lut", best[1])
 

@@ -85,7 +85,7 @@ def gather(pictures: Iterable[tuple[NDArray[np.bool_], NDArray[np.bool_]]]) -> E
         near += np.bincount(codes[widened(edges)], minlength=WINDOW_CODES)
         around.append(sliding_window_view(codes, (3, 3))[edges[1:-1, 1:-1]].reshape(-1, 9))
     if not any(map(len, around)):
-        raise InputError("Canny finds no edge in the pictures", mend="give pictures with more contrast")
+        raise InputError("Canny finds no edge in the pictures", hint="give pictures with more contrast")
     sets = np.sort(np.concatenate(around), axis=1)
     sets[:, 1:][sets[:, 1:] == sets[:, :-1]] = WINDOW_CODES
     unique, times = np.unique(np.sort(sets, axis=1), axis=0, return_counts=True)

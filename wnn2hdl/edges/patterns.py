@@ -55,7 +55,7 @@ def from_file(path: Path) -> EdgeFilter:
     listed = data.get("patterns") if isinstance(data, dict) else data
     if not isinstance(listed, list) or not listed:
         raise InputError(
-            "the file holds no list of edge patterns", value=path, mend="write a JSON list such as [56, 504]"
+            "the file holds no list of edge patterns", value=path, hint="write a JSON list such as [56, 504]"
         )
     patterns = np.zeros(WINDOW_CODES, dtype=np.bool_)
     for number, entry in enumerate(listed, start=1):
@@ -72,7 +72,7 @@ def _code(entry: Any, where: str) -> int:
         raise InputError(
             f"{where} is no 3x3 pattern",
             value=json.dumps(entry),
-            mend=f"write a code from 0 to {WINDOW_CODES - 1}, nine 0s and 1s, or three rows of three",
+            hint=f"write a code from 0 to {WINDOW_CODES - 1}, nine 0s and 1s, or three rows of three",
         )
     return sum(1 << bit for bit, character in enumerate(text) if character == "1")
 

@@ -60,7 +60,7 @@ def check(folder: Path, *, besides: Container[str] = ()) -> list[str]:
     data = read_json(folder / MANIFEST_NAME, "a manifest")
     files = data.get("files")
     if data.get("format") != FORMAT or not isinstance(files, dict) or not files:
-        raise ModelFileError("not a manifest", value=folder / MANIFEST_NAME, mend="compile the model again")
+        raise ModelFileError("not a manifest", value=folder / MANIFEST_NAME, hint="compile the model again")
     differences = []
     for name, digest in files.items():
         if name in besides:

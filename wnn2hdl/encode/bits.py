@@ -17,10 +17,10 @@ def parse_bits(text: str) -> BitSelect:
             raise InputError(
                 "no such pixel bit",
                 value=repr(name),
-                mend="use R, G or B and a number from 0 to 7 (7 is the highest), as in R7,G7,B7",
+                hint="use R, G or B and a number from 0 to 7 (7 is the highest), as in R7,G7,B7",
             )
     if len(set(names)) != len(names):
-        raise InputError("a pixel bit is named twice", value=text, mend="name each bit once")
+        raise InputError("a pixel bit is named twice", value=text, hint="name each bit once")
     return BitSelect(names)
 
 
@@ -33,6 +33,6 @@ def high_bits(per_channel: int = 4) -> BitSelect:
         InputError: fewer than 1 or more than 8 bits a channel.
     """
     if not 1 <= per_channel <= CHANNEL_BITS:
-        raise InputError("no such number of bits a channel", value=per_channel, mend="choose 1 to 8")
+        raise InputError("no such number of bits a channel", value=per_channel, hint="choose 1 to 8")
     tops = range(CHANNEL_BITS - 1, CHANNEL_BITS - 1 - per_channel, -1)
     return BitSelect(tuple(f"{channel}{bit}" for channel in CHANNELS for bit in tops))

@@ -26,14 +26,14 @@ def fit_thermometer(features: ArrayLike, bits: int) -> Thermometer:
         raise InputError("features must be a filled array [samples, features]", value=columns.shape)
     if not np.isfinite(columns).all():
         raise InputError(
-            "a feature is not finite", value="NaN or infinity", mend="drop or fill such samples first"
+            "a feature is not finite", value="NaN or infinity", hint="drop or fill such samples first"
         )
     if bits < 1:
-        raise InputError("no such number of bits a feature", value=bits, mend="choose at least 1")
+        raise InputError("no such number of bits a feature", value=bits, hint="choose at least 1")
     thresholds = tuple(tuple(_levels(column, bits).tolist()) for column in columns.T)
     if not any(thresholds):
         raise InputError(
-            "every feature is constant", value=f"{columns.shape[1]} features", mend="give others"
+            "every feature is constant", value=f"{columns.shape[1]} features", hint="give others"
         )
     return Thermometer(thresholds)
 

@@ -46,7 +46,7 @@ def require_same_classes(classes: tuple[str, ...], dataset: Dataset) -> None:
         raise InputError(
             "the model and the masks have different classes",
             value=f"{', '.join(classes)} / {', '.join(dataset.classes)}",
-            mend="give the masks a palette of the model's classes in their order",
+            hint="give the masks a palette of the model's classes in their order",
         )
 
 

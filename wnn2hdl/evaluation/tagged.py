@@ -93,7 +93,7 @@ def evaluate_tagged(
     for name in reported(cleared, "classifying chips", len(cleared), progress):
         if name not in files:
             raise InputError(
-                f"no picture of this name in {chips}", value=name, mend="correct the file of tags"
+                f"no picture of this name in {chips}", value=name, hint="correct the file of tags"
             )
         answers = classifier.classify(with_halo(read_rgb(files[name]), classifier.halo))
         shares[name] = float(np.isin(answers, counted).mean())
@@ -127,14 +127,14 @@ def read_tags(path: Path) -> dict[str, frozenset[str]]:
                 raise InputError(
                     "the file of tags has other columns",
                     value=f"{path} ({','.join(columns)})",
-                    mend=f"its first line should be {','.join(COLUMNS)}",
+                    hint=f"its first line should be {','.join(COLUMNS)}",
                 )
             for row in reader:
                 if None in row:
                     raise InputError(
                         f"row {reader.line_num} of {path} has more than two columns",
                         value=",".join([*list(row.values())[:2], *row[None]]),
-                        mend="put blanks between the tags",
+                        hint="put blanks between the tags",
                     )
                 if row["image_name"] in rows:
                     raise InputError(
@@ -146,7 +146,7 @@ def read_tags(path: Path) -> dict[str, frozenset[str]]:
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError("the file of tags is no CSV text", value=f"{path} ({error})") from error
     if not rows:
-        raise InputError("the file of tags has no rows", value=path, mend="add the tags of a picture")
+        raise InputError("the file of tags has no rows", value=path, hint="add the tags of a picture")
     return rows
 
 

@@ -27,7 +27,7 @@ def list_images(folder: Path) -> tuple[Path, ...]:
         raise InputError(
             "no pictures in the folder",
             value=folder,
-            mend=f"it should hold files ending in {', '.join(SUFFIXES)}",
+            hint=f"it should hold files ending in {', '.join(SUFFIXES)}",
         )
     return found
 
@@ -45,7 +45,7 @@ def pair_masks(images: Path, masks: Path) -> tuple[tuple[Path, Path], ...]:
         raise InputError(
             f"{len(missing)} of {len(pictures)} pictures have no mask of the same stem in {masks}",
             value=", ".join(missing[:3]) + (" …" if len(missing) > 3 else ""),
-            mend="add the masks, or take the pictures out",
+            hint="add the masks, or take the pictures out",
         )
     return tuple((path, mask_of[stem]) for stem, path in pictures.items())
 
@@ -62,7 +62,7 @@ def by_stem(folder: Path) -> dict[str, Path]:
             raise InputError(
                 "two pictures of a folder have the same stem",
                 value=f"{found[path.stem]}, {path.name}",
-                mend="rename or remove one",
+                hint="rename or remove one",
             )
         found[path.stem] = path
     return found

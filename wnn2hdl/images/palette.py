@@ -62,11 +62,11 @@ class Palette:
                 raise InputError(
                     f"the palette {path} gives {name!r} no colour",
                     value=repr(text),
-                    mend="write it as #rrggbb",
+                    hint="write it as #rrggbb",
                 ) from error
         if len(set(colours)) != len(colours):
             raise InputError(
-                "two classes of the palette share a colour", value=path, mend="change one of them"
+                "two classes of the palette share a colour", value=path, hint="change one of them"
             )
         return cls(tuple(entries), tuple(colours))
 

@@ -92,7 +92,7 @@ def read_mask(path: Path, shape: tuple[int, int]) -> NDArray[np.uint8]:
             raise InputError(
                 "the mask's palette does not give black, and black alone, to index 0",
                 value=path,
-                mend="save it as a grey picture, 0 forest and 255 deforested, or give a palette file",
+                hint="save it as a grey picture, 0 forest and 255 deforested, or give a palette file",
             )
     return deforested.astype(np.uint8)
 
@@ -123,7 +123,7 @@ def read_labels(path: Path, shape: tuple[int, int], palette: Palette) -> NDArray
         raise InputError(
             f"{strange.size} pixels of the mask have a colour that is not in the palette",
             value=f"{path} (#{int(strange[0]):06x})",
-            mend=f"use the colours of {', '.join(palette.names)}, without smoothing",
+            hint=f"use the colours of {', '.join(palette.names)}, without smoothing",
         )
     return np.asarray(labels, dtype=np.uint8)
 
@@ -137,19 +137,19 @@ def _opened(path: Path) -> Iterator[ImageFile.ImageFile]:
             yield picture
     except Image.DecompressionBombError as error:
         raise InputError(
-            "the picture is too large to be read at once", value=f"{path} ({error})", mend="cut it into tiles"
+            "the picture is too large to be read at once", value=f"{path} ({error})", hint="cut it into tiles"
         ) from error
     except UnidentifiedImageError as error:
         raise InputError(
             "not a picture that can be read",
             value=path,
-            mend=f"give a {', '.join(FORMATS[:-1])} or {FORMATS[-1]} file",
+            hint=f"give a {', '.join(FORMATS[:-1])} or {FORMATS[-1]} file",
         ) from error
     except _BROKEN as error:
         if isinstance(error, OSError) and error.errno is not None:
             raise InputError("cannot read the picture", value=f"{path} ({error.strerror})") from error
         raise InputError(
-            "the picture is damaged or truncated", value=f"{path} ({error})", mend="copy or save it again"
+            "the picture is damaged or truncated", value=f"{path} ({error})", hint="copy or save it again"
         ) from error
 
 
@@ -158,11 +158,11 @@ def _rgb(picture: ImageFile.ImageFile, path: Path) -> NDArray[np.uint8]:
         raise InputError(
             f"the picture has samples of {_sample_bits(picture)} bits",
             value=path,
-            mend="scale it to 8 bits a channel first, for instance with gdal_translate -ot Byte -scale",
+            hint="scale it to 8 bits a channel first, for instance with gdal_translate -ot Byte -scale",
         )
     if picture.mode not in EIGHT_BIT_MODES:
         raise InputError(
-            f"the picture is of the kind {picture.mode}", value=path, mend="save it as 8-bit RGB"
+            f"the picture is of the kind {picture.mode}", value=path, hint="save it as 8-bit RGB"
         )
     _require_data(picture, path)
     upright = ImageOps.exif_transpose(picture)
@@ -174,7 +174,7 @@ def _rgb(picture: ImageFile.ImageFile, path: Path) -> NDArray[np.uint8]:
         raise InputError(
             f"{transparent} pixels of the picture are transparent",
             value=path,
-            mend="cut the empty border off or fill it, and save without alpha",
+            hint="cut the empty border off or fill it, and save without alpha",
         )
     return np.ascontiguousarray(pixels[..., :3])
 
@@ -190,7 +190,7 @@ def _require_data(picture: ImageFile.ImageFile, path: Path) -> None:
         raise InputError(
             f"{count} pixels of the picture hold no data",
             value=path,
-            mend="cut them off; or, if they are data all the same, remove the tag: gdal_edit.py -unsetnodata",
+            hint="cut them off; or, if they are data all the same, remove the tag: gdal_edit.py -unsetnodata",
         )
 
 
@@ -206,13 +206,13 @@ def _lossless(picture: ImageFile.ImageFile, path: Path, shape: tuple[int, int]) 
     """The colours of a mask, its format and size checked."""
     if picture.format == "JPEG":
         raise InputError(
-            "a JPEG cannot be a mask, its compression smears labels", value=path, mend="save the mask as PNG"
+            "a JPEG cannot be a mask, its compression smears labels", value=path, hint="save the mask as PNG"
         )
     colours = _rgb(picture, path)
     if colours.shape[:2] != shape:
         raise InputError(
             "the mask and its picture have different sizes",
             value=f"{path} is {colours.shape[1]}x{colours.shape[0]}, the picture {shape[1]}x{shape[0]}",
-            mend="give a mask of the picture's size",
+            hint="give a mask of the picture's size",
         )
     return colours

@@ -189,7 +189,7 @@ def pixel_encoder(model: WisardModel) -> BitSelect:
         raise InputError(
             "the model looks at more than one pixel",
             value=f"at {encoder.size}x{encoder.size}",
-            mend="use one that was trained without --neighbourhood",
+            hint="use one that was trained without --neighbourhood",
         )
     return encoder
 
@@ -204,7 +204,7 @@ def picture_encoder(model: WisardModel) -> PictureEncoder:
         raise InputError(
             "the model does not read pixels",
             value=f"its encoder is of kind {model.encoder.kind}",
-            mend="use one that was trained on images",
+            hint="use one that was trained on images",
         )
     return model.encoder
 
@@ -218,14 +218,14 @@ def _validator() -> jsonschema.Draft202012Validator:
 def _check_format(data: dict[str, Any], path: Path) -> None:
     if data.get("format") != FORMAT:
         raise ModelFileError(
-            "not a wnn2hdl model", value=f"{path} (format {data.get('format')!r})", mend="train or import one"
+            "not a wnn2hdl model", value=f"{path} (format {data.get('format')!r})", hint="train or import one"
         )
     version = data.get("version")
     if isinstance(version, int) and version > VERSION:
         raise ModelFileError(
             "the model was saved by a newer wnn2hdl",
             value=f"{path} (version {version})",
-            mend="upgrade wnn2hdl",
+            hint="upgrade wnn2hdl",
         )
     error = jsonschema.exceptions.best_match(_validator().iter_errors(data))
     if error is not None:
@@ -233,7 +233,7 @@ def _check_format(data: dict[str, Any], path: Path) -> None:
         raise ModelFileError(
             "the model file is damaged",
             value=f"{path} (at {where}: {error.message[:120]})",
-            mend="save it again",
+            hint="save it again",
         )
 
 

@@ -154,7 +154,7 @@ class LutNetwork:
             outputs = tuple((name, signal) for name, signal in data["outputs"])
             return cls(tuple(data["inputs"]), cells, outputs)
         except (KeyError, TypeError, ValueError) as error:
-            raise ModelFileError("not a LUT network", value=error, mend="compile the model again") from error
+            raise ModelFileError("not a LUT network", value=error, hint="compile the model again") from error
 
 
 def _check_contents(lut: Lut) -> None:

@@ -75,7 +75,7 @@ class TruthTable:
             care = _from_hex(data["care"], size)
             return cls(tuple(data["inputs"]), tuple(data["outputs"]), values, care)
         except (KeyError, TypeError, ValueError) as error:
-            raise ModelFileError("not a truth table", value=error, mend="compile the model again") from error
+            raise ModelFileError("not a truth table", value=error, hint="compile the model again") from error
 
 
 @dataclass(frozen=True)

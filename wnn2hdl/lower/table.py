@@ -78,14 +78,14 @@ def care_set(histogram: NDArray[np.int64], minimum: int) -> NDArray[np.bool_]:
     """
     if minimum < 1:
         raise InputError(
-            "a care set cannot ask for so few occurrences", value=minimum, mend="ask for 1 or more"
+            "a care set cannot ask for so few occurrences", value=minimum, hint="ask for 1 or more"
         )
     care = histogram >= minimum
     if not care.any():
         raise InputError(
             "no code occurs often enough to be cared for",
             value=f"{minimum} times asked, {histogram.max()} at most seen",
-            mend="ask for fewer or give more imagery",
+            hint="ask for fewer or give more imagery",
         )
     return care
 
@@ -95,5 +95,5 @@ def _check_width(width: int) -> None:
         raise InputError(
             "too many input bits for one truth table",
             value=f"{width} bits",
-            mend=f"choose at most {MAX_TABLE_INPUTS}",
+            hint=f"choose at most {MAX_TABLE_INPUTS}",
         )

@@ -41,5 +41,5 @@ def require_equal(table: TruthTable, function: Function, what: str) -> None:
         raise CheckError(
             f"{what} differs from its table on {wrong.size} cared-for codes",
             value=f"first code {wrong[0]}",
-            mend="this is a defect of the minimiser; report it with the model",
+            hint="this is a defect of the minimiser; report it with the model",
         )

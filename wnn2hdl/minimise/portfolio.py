@@ -88,7 +88,7 @@ def map_luts(
         ToolError: ABC is needed and missing.
     """
     if effort not in EFFORTS:
-        raise InputError("no such effort", value=effort, mend="give 0, 1, 2 or 3")
+        raise InputError("no such effort", value=effort, hint="give 0, 1, 2 or 3")
     started = time.perf_counter()
     search = _Search(table, progress)
     search.offer_all(_decomposed(table, effort))

@@ -50,18 +50,18 @@ def choose_channels(
     raise InputError(
         f"the file does not say which of its {count} bands are red, green and blue",
         value=f"{path} ({', '.join(interpretations)})",
-        mend="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
+        hint="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
     )
 
 
 def _check_choice(path: Path, bands: tuple[int, ...], count: int) -> None:
     if len(bands) not in (1, 3):
         raise InputError(
-            "one band or three are read", value=",".join(map(str, bands)), mend="as in --bands 3,2,1"
+            "one band or three are read", value=",".join(map(str, bands)), hint="as in --bands 3,2,1"
         )
     if not all(1 <= band <= count for band in bands):
         raise InputError(
             f"the file has bands 1 to {count}",
             value=f"{path} (asked for {','.join(map(str, bands))})",
-            mend="name others with --bands",
+            hint="name others with --bands",
         )

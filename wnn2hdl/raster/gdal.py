@@ -87,7 +87,7 @@ def gdal(path: Path) -> Iterator[Any]:
         raise InputError(
             "cannot read or write the raster",
             value=f"{path} ({reason})",
-            mend="it may be damaged, truncated, of an unknown format, or the disk full",
+            hint="it may be damaged, truncated, of an unknown format, or the disk full",
         ) from error
 
 

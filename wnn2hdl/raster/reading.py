@@ -119,7 +119,7 @@ class RasterReader:
             raise InputError(
                 f"the picture says that it is to be turned (orientation {self._orientation})",
                 value=self._path,
-                mend="save it upright",
+                hint="save it upright",
             )
 
     def read(
@@ -179,21 +179,21 @@ class RasterReader:
             self.files += tuple(map(Path, source.files))
         if lossy:
             raise InputError(
-                "a JPEG cannot be a mask, its compression smears it", value=mask, mend="save it as PNG"
+                "a JPEG cannot be a mask, its compression smears it", value=mask, hint="save it as PNG"
             )
         if not opaque:
-            raise InputError("the mask has no band but alpha", value=mask, mend="save it as grey")
+            raise InputError("the mask has no band but alpha", value=mask, hint="save it as grey")
         if size != (self.height, self.width):
             raise InputError(
                 "the mask and the picture have different sizes",
                 value=f"{mask} is {size[1]}x{size[0]}, the picture {self.width}x{self.height}",
-                mend="give a mask of the picture's size",
+                hint="give a mask of the picture's size",
             )
         if not same_grid(self.georeference, place, *size):
             raise InputError(
                 "the mask and the picture lie in different places",
                 value=mask,
-                mend="warp it to the picture's grid first, for instance with gdalwarp",
+                hint="warp it to the picture's grid first, for instance with gdalwarp",
             )
 
 
@@ -242,7 +242,7 @@ def _palette(source: Any, path: Path, band: int) -> NDArray[np.uint8]:
         raise InputError(
             f"the colour table is of {source.dtypes[band - 1]} indices",
             value=path,
-            mend="make it red, green and blue first, for instance with gdal_translate -expand rgb",
+            hint="make it red, green and blue first, for instance with gdal_translate -expand rgb",
         )
     table = np.zeros((256, 4), dtype=np.uint8)
     for index, colour in source.colormap(band).items():
@@ -259,10 +259,10 @@ def _stated_scale(source: Any, channels: Channels) -> tuple[float, float] | None
 def _require_levels(source: Any, path: Path, kinds: set[str]) -> None:
     """Refuse samples that are no rising levels; GDAL gives them as they are stored."""
     if any(kind.startswith("complex") for kind in kinds):
-        raise InputError("the samples are complex", value=path, mend="make levels of them first")
+        raise InputError("the samples are complex", value=path, hint="make levels of them first")
     if source.tags(ns="IMAGE_STRUCTURE").get("MINISWHITE") == "YES":
         raise InputError(
-            "0 is white in the file", value=path, mend="save it with 0 for black (photometric MINISBLACK)"
+            "0 is white in the file", value=path, hint="save it with 0 for black (photometric MINISBLACK)"
         )
 
 
@@ -279,5 +279,5 @@ def _unscaled(source: Any, indexes: tuple[int, ...], path: Path, kinds: set[str]
     return InputError(
         f"the samples are {'/'.join(sorted(kinds))}, and how they become 0 to 255 is not said",
         value=f"{path} ({span})",
-        mend="say --scale LOW:HIGH, as in --scale 0:3000",
+        hint="say --scale LOW:HIGH, as in --scale 0:3000",
     )

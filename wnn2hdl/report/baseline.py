@@ -61,13 +61,13 @@ def write_baseline(
     for name, report in reports.items():
         if report["proof"]["status"] != "proved":
             raise CheckError(
-                "a build that is not proved makes no baseline", value=name, mend="compile it again"
+                "a build that is not proved makes no baseline", value=name, hint="compile it again"
             )
         if changes[name]:
             raise CheckError(
                 "a build that was changed makes no baseline",
                 value=f"{name} ({', '.join(changes[name])})",
-                mend="compile it again",
+                hint="compile it again",
             )
     builds = {name: asdict(recorded(report)) for name, report in sorted(reports.items())}
     write_json(path, {"format": FORMAT, "version": VERSION, "builds": builds})

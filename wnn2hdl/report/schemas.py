@@ -17,14 +17,14 @@ def check_report(report: Mapping[str, Any], path: Path) -> None:
     check(report, "report", path, "compile the model again with this wnn2hdl")
 
 
-def check(data: Mapping[str, Any], name: str, path: Path, mend: str) -> None:
+def check(data: Mapping[str, Any], name: str, path: Path, hint: str) -> None:
     """Check an object against a schema of this package.
 
     Args:
         data: the object.
         name: of the schema: ``baseline`` or ``report``.
         path: the file it was read from.
-        mend: what to do about a damaged one.
+        hint: what to do about a damaged one.
 
     Raises:
         ModelFileError: it does not fit.
@@ -35,7 +35,7 @@ def check(data: Mapping[str, Any], name: str, path: Path, mend: str) -> None:
         raise ModelFileError(
             f"not a {name}, or one of another version",
             value=f"{path} (at {where}: {error.message[:120]})",
-            mend=mend,
+            hint=hint,
         )
 
 

@@ -156,7 +156,7 @@ def make_flight(
     }
     for need, met in checks.items():
         if not met:
-            raise InputError("no such flight", value=f"seed {seed}, map {map_shape}", mend=f"use {need}")
+            raise InputError("no such flight", value=f"seed {seed}, map {map_shape}", hint=f"use {need}")
     focal = 0.75 * frame_size[1] if focal_px is None else focal_px
     camera = SampleCamera(focal, frame_size[1], frame_size[0], tilt_deg, distortion)
     poses = _fly(seed, map_shape, camera, frames, height_m, spacing_m, gusts_deg)
@@ -217,7 +217,7 @@ def _fly(
         raise InputError(
             "the map is too small for such a flight",
             value=f"{sides[1]:g} m x {sides[0]:g} m",
-            mend=f"use sides of at least {2 * (margin + spacing_m):.0f} m, or fly lower",
+            hint=f"use sides of at least {2 * (margin + spacing_m):.0f} m, or fly lower",
         )
     track = fly_track(rng, room, frames, spacing_m)
     # The wind blows from one side all the time, so the nose does not point along the track. The angle takes

@@ -53,13 +53,13 @@ class SampleCamera:
             raise InputError(
                 "no camera has this size or focal length",
                 value=f"{self.width}x{self.height}, {self.focal_px}",
-                mend="use sides of at least 1 pixel and a focal length above 0",
+                hint="use sides of at least 1 pixel and a focal length above 0",
             )
         if not abs(self.tilt_deg) <= 80:
             raise InputError("the camera does not look down", value=f"tilt {self.tilt_deg:g} degrees")
         if len(self.distortion) not in (0, 4, 5) or not all(map(math.isfinite, self.distortion)):
             raise InputError(
-                "not the coefficients of a lens", value=self.distortion, mend="give k1, k2, p1, p2 and k3"
+                "not the coefficients of a lens", value=self.distortion, hint="give k1, k2, p1, p2 and k3"
             )
 
     def rays(self) -> NDArray[np.float64]:
@@ -94,7 +94,7 @@ class SampleCamera:
         raise InputError(
             "the lens's distortion has no inverse within the frame",
             value=self.distortion,
-            mend="use smaller coefficients or a longer focal length",
+            hint="use smaller coefficients or a longer focal length",
         )
 
 
@@ -137,7 +137,7 @@ def ground_points(camera: SampleCamera, pose: SamplePose) -> NDArray[np.float64]
         raise InputError(
             "the camera sees the horizon",
             value=f"tilt {camera.tilt_deg:g}, pitch {pose.pitch_deg:.1f}, roll {pose.roll_deg:.1f} degrees",
-            mend="use less tilt, calmer air, or a longer focal length",
+            hint="use less tilt, calmer air, or a longer focal length",
         )
     return np.asarray(down[..., :2] * (pose.height_m / down[..., 2:]))
 

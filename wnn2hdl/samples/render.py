@@ -61,7 +61,7 @@ def landscape(height: int, width: int, seed: int, *, season: Season = "dry") -> 
         raise InputError(
             "no landscape has this size or seed",
             value=f"{width}x{height}, seed {seed}",
-            mend="use sides of at least 1 and a seed of at least 0",
+            hint="use sides of at least 1 and a seed of at least 0",
         )
     shape = (height, width)
     rng = np.random.default_rng([seed, 0x57AE])

@@ -77,7 +77,7 @@ def count_cells(cells: Mapping[str, int], *, delay_ps: int | None, baseline: boo
         raise CheckError(
             "the mapped netlist has cells that the count does not know",
             value=", ".join(f"{number} {cell}" for cell, number in sorted(uncounted.items())),
-            mend="write the design without them",
+            hint="write the design without them",
         )
     whole = {kind: int(number) for kind, number in sums.items() if kind not in ("luts", "bram36")}
     luts = int(sums["luts"]) + (0 if baseline else whole["inv"])

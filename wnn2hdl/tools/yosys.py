@@ -86,7 +86,7 @@ def find_yosys() -> Yosys:
     choice = os.environ.get(CHOICE)
     if choice is not None and choice not in _PLACES:
         raise InputError(
-            f"{CHOICE} names no Yosys", value=choice, mend=f"leave it out or set it to {' or '.join(_PLACES)}"
+            f"{CHOICE} names no Yosys", value=choice, hint=f"leave it out or set it to {' or '.join(_PLACES)}"
         )
     failures: list[ToolError] = []
     for place in [choice] if choice else _PLACES:
@@ -105,9 +105,9 @@ def find_yosys() -> Yosys:
     if failures:
         first = failures[0]
         raise ToolError(
-            "no Yosys works", value=first, mend=_INSTALL, command=first.command, output=first.output
+            "no Yosys works", value=first, hint=_INSTALL, command=first.command, output=first.output
         )
-    raise ToolError("no Yosys found", value=choice, mend=_INSTALL)
+    raise ToolError("no Yosys found", value=choice, hint=_INSTALL)
 
 
 Candidate = tuple[str, tuple[str, ...], Path | None]
@@ -155,14 +155,14 @@ def _run_script(
         # The process is called python3; the user knows it as a Yosys.
         fault = error.fault.replace(Path(command[0]).name, name, 1)
         raise ToolError(
-            fault, value=error.value, mend=error.mend, command=error.command, output=error.output
+            fault, value=error.value, hint=error.hint, command=error.command, output=error.output
         ) from error
     log, end, _ = output.rpartition(f"\n{_END}\n")
     if not end:
         raise ToolError(
             f"{name} stopped in the middle of its script",
             value=output.strip().rpartition("\n")[2],
-            mend="use another Yosys: pip install pyosys",
+            hint="use another Yosys: pip install pyosys",
             command=shlex.join(command),
             output=output,
         )

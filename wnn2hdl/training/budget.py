@@ -68,7 +68,7 @@ def train_under_budget(
     """
     if max_luts < 1:
         raise InputError(
-            "a classifier takes at least one LUT a pixel", value=max_luts, mend="allow 1 or more"
+            "a classifier takes at least one LUT a pixel", value=max_luts, hint="allow 1 or more"
         )
     points = measure(dataset, trials=trials, seed=seed, progress=progress, max_luts=max_luts)
     fitting = [point for point in points if point.luts <= max_luts]
@@ -76,7 +76,7 @@ def train_under_budget(
         raise InputError(
             f"no classifier of at most {max_luts} LUTs a pixel was found",
             value=f"{len(points)} candidates",
-            mend="allow more, or try more mappings",
+            hint="allow more, or try more mappings",
         )
     best = max(fitting, key=lambda point: (point.accuracy, -point.luts))
     figures = {"luts": best.luts, "cross_validated_accuracy": best.accuracy, "images": list(dataset.names)}

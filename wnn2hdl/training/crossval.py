@@ -28,7 +28,7 @@ def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
         InputError: fewer than two images.
     """
     if len(images) < 2:
-        raise InputError("cross-validation by image needs two images", value=len(images), mend="give more")
+        raise InputError("cross-validation by image needs two images", value=len(images), hint="give more")
     folds = min(FOLDS, len(images))
     right = 0
     for fold in range(folds):

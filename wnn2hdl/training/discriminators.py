@@ -24,7 +24,7 @@ def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -
         raise InputError(
             "too many input bits for one truth table",
             value=encoder.width,
-            mend=f"choose at most {MAX_TABLE_INPUTS}",
+            hint=f"choose at most {MAX_TABLE_INPUTS}",
         )
     shape = (len(dataset.classes), 1 << encoder.width)
     histograms = np.zeros((len(dataset), *shape), dtype=np.int64)
@@ -35,7 +35,7 @@ def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -
             raise InputError(
                 f"no training pixel is labelled {name}",
                 value=f"{len(dataset)} images",
-                mend="add images that show every class",
+                hint="add images that show every class",
             )
     return histograms
 

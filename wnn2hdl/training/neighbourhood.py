@@ -33,7 +33,7 @@ def train_neighbourhood(
         raise InputError(
             f"a neighbourhood takes {LUTS} LUTs",
             value=f"{max_luts} allowed",
-            mend="allow more, or train without --neighbourhood",
+            hint="allow more, or train without --neighbourhood",
         )
     windows, labels, means = [], [], []
     for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
@@ -65,7 +65,7 @@ def _draw(
         raise InputError(
             "an image is smaller than the neighbourhood",
             value=f"{image.name} of {width}x{height} pixels",
-            mend="give larger ones",
+            hint="give larger ones",
         )
     rows = rng.integers(height - size + 1, size=WINDOWS)
     columns = rng.integers(width - size + 1, size=WINDOWS)

@@ -128,7 +128,7 @@ def _record(component: Component, bench: Bench, path: Path) -> None:
         raise InputError(
             "cannot record the waves",
             value=f"{path} ({error.strerror})",
-            mend="choose a folder you may write to",
+            hint="choose a folder you may write to",
         ) from error
 
 

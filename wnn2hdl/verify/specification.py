@@ -77,7 +77,7 @@ class Specification:
                 # Any circuit equals the model on no input at all.
                 raise InputError(
                     f"the {name} care set is empty, so there is nothing to prove",
-                    mend="give imagery that holds pixels",
+                    hint="give imagery that holds pixels",
                 )
 
     @classmethod
@@ -185,7 +185,7 @@ class NeighbourhoodSpecification:
         if self.care.shape != (1 << self.model.encoder.width,) or self.care.dtype != np.bool_:
             raise ValueError(f"the care set does not fit the model: {self.care.dtype} {self.care.shape}")
         if not self.care.any():
-            raise InputError("the care set is empty, so there is nothing to prove", mend="give other imagery")
+            raise InputError("the care set is empty, so there is nothing to prove", hint="give other imagery")
 
     @property
     def encoder(self) -> Neighbourhood:

@@ -43,7 +43,7 @@ def choose_bleaching(histograms: NDArray[np.int64], mapping: NDArray[np.int64]) 
     """
     codes = np.flatnonzero(histograms.any(axis=(0, 1)))
     if len(codes) == 0:
-        raise InputError("there are no pixels to train on", mend="give labelled images")
+        raise InputError("there are no pixels to train on", hint="give labelled images")
     width = histograms.shape[2].bit_length() - 1
     where = addresses(codes_to_bits(codes, width), mapping)
     seen = histograms[:, :, codes]

@@ -27,18 +27,18 @@ def draw_mapping(bits: int, rams: int, address_bits: int, seed: int) -> NDArray[
         InputError: no RAM, or more address bits than input bits or than a RAM may have.
     """
     if rams < 1:
-        raise InputError("a discriminator needs at least one RAM", value=rams, mend="choose 1 or more")
+        raise InputError("a discriminator needs at least one RAM", value=rams, hint="choose 1 or more")
     if not 1 <= address_bits <= MAX_TABLE_INPUTS:
         raise InputError(
             "a RAM cannot have so many address bits",
             value=address_bits,
-            mend=f"choose 1 to {MAX_TABLE_INPUTS}",
+            hint=f"choose 1 to {MAX_TABLE_INPUTS}",
         )
     if address_bits > bits:
         raise InputError(
             "a RAM has more address bits than the network has input bits",
             value=f"{address_bits} of {bits}",
-            mend=f"choose at most {bits} address bits or more input bits",
+            hint=f"choose at most {bits} address bits or more input bits",
         )
     rng = np.random.default_rng(seed)
     reads = np.zeros(bits, dtype=np.int64)

@@ -38,7 +38,7 @@ def train_histogram(
     for name, pixels in zip(classes, histogram, strict=True):
         if not pixels.any():
             raise InputError(
-                "a class has no training pixels", value=name, mend="give images that show every class"
+                "a class has no training pixels", value=name, hint="give images that show every class"
             )
     codes = np.flatnonzero(histogram.any(axis=0))
     where = addresses(codes_to_bits(codes, encoder.width), mapping)
@@ -68,13 +68,13 @@ class PixelClassifier:
             raise InputError(
                 "the model does not read pixels",
                 value=f"its encoder is of kind {encoder.kind}",
-                mend="use a pixel model",
+                hint="use a pixel model",
             )
         if encoder.width > MAX_TABLE_INPUTS or len(model.classes) > 256:
             raise InputError(
                 "the model is too large for a table",
                 value=f"{encoder.width} bits, {len(model.classes)} classes",
-                mend=f"choose at most {MAX_TABLE_INPUTS} bits and 256 classes",
+                hint=f"choose at most {MAX_TABLE_INPUTS} bits and 256 classes",
             )
         self.table = model.evaluate_all_codes().astype(np.uint8)
         self._encoder = encoder

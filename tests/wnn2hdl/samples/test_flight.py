@@ -229,7 +229,7 @@ def test_writing_twice_gives_the_same_bytes(flight: Flight, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("changes", "mend"),
+    ("changes", "hint"),
     [
         ({"seed": -1}, "a seed of at least 0"),
         ({"frames": 0}, "at least 1 frame"),
@@ -243,9 +243,9 @@ def test_writing_twice_gives_the_same_bytes(flight: Flight, tmp_path: Path) -> N
         ({"distortion": (0.1,)}, "give k1, k2, p1, p2 and k3"),
     ],
 )
-def test_impossible_flights_are_refused(changes: dict[str, object], mend: str) -> None:
+def test_impossible_flights_are_refused(changes: dict[str, object], hint: str) -> None:
     arguments: dict[str, object] = {"seed": 0, "map_shape": MAP, "frames": 2, "frame_size": FRAME} | changes
-    with pytest.raises(InputError, match=mend):
+    with pytest.raises(InputError, match=hint):
         make_flight(**arguments)  # type: ignore[arg-type]
 
 

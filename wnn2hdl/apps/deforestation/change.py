@@ -71,7 +71,7 @@ def write_change(
             raise InputError(
                 "the rasters of the two dates are on different grids",
                 value=f"{before} and {after}",
-                mend="bring them onto one grid first, for instance with gdalwarp -r near",
+                hint="bring them onto one grid first, for instance with gdalwarp -r near",
             )
         place = next((one for one in places if one.located), places[0])
         strips = strip_rows(earlier, STRIP_PIXELS)

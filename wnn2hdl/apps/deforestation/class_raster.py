@@ -50,7 +50,7 @@ def open_classes(path: Path) -> "Iterator[DatasetReader]":
             raise InputError(
                 "a class raster has one band of 8 bits",
                 value=f"{path} ({dataset.count} of {dataset.dtypes[0]})",
-                mend="give a raster that `wnn2hdl scan` wrote",
+                hint="give a raster that `wnn2hdl scan` wrote",
             )
         yield dataset
 

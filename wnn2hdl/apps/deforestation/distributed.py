@@ -45,7 +45,7 @@ def run_distributed(
             raise ToolError(
                 "every worker died that was given one window",
                 value=f"{task.path}, from row {window.row} and column {window.column} on",
-                mend="see the workers' logs; run the same command again, finished windows are kept",
+                hint="see the workers' logs; run the same command again, finished windows are kept",
             )
         yield result
 

@@ -85,7 +85,7 @@ class PixelAreas:
         return InputError(
             "the pixels have no area on the Earth",
             value=f"transform {self._transform}",
-            mend="correct the picture's transform or coordinate system, for instance with gdal_edit",
+            hint="correct the picture's transform or coordinate system, for instance with gdal_edit",
         )
 
 
@@ -105,7 +105,7 @@ def to_degrees(crs: str) -> "Transformer":
         raise InputError(
             "no way from the raster's coordinate system to longitude and latitude on the Earth",
             value=error,
-            mend="correct the system, for instance with gdal_edit.py -a_srs",
+            hint="correct the system, for instance with gdal_edit.py -a_srs",
         ) from error
 
 

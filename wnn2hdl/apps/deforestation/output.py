@@ -39,7 +39,7 @@ def require_apart(inputs: Iterable[Path], output: Path) -> None:
     results = {(folder / name).resolve() for folder in (output, output / BEFORE) for name in _RESULTS}
     for path in inputs:
         if path.resolve() in results:
-            raise InputError("the scan would write over what it reads", value=path, mend="choose another -o")
+            raise InputError("the scan would write over what it reads", value=path, hint="choose another -o")
 
 
 @contextmanager

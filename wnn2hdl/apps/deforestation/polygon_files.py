@@ -157,7 +157,7 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
                 )
             except DataSourceError as error:
                 raise InputError(
-                    "cannot write the polygons", value=f"{path} ({error})", mend="the disk may be full"
+                    "cannot write the polygons", value=f"{path} ({error})", hint="the disk may be full"
                 ) from error
 
     # An empty table first, so that a raster without regions makes a file too.

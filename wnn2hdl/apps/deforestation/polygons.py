@@ -60,7 +60,7 @@ def write_polygons(
         raise InputError(
             "polygons are written as GeoJSON or GeoPackage",
             value=output,
-            mend=f"end its name in {' or '.join(WRITERS)}",
+            hint=f"end its name in {' or '.join(WRITERS)}",
         )
     pixels, hectares = np.zeros(len(names), dtype=np.int64), np.zeros(len(names))
     with open_classes(raster) as dataset, staged(output) as unfinished:

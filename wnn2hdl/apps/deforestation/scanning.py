@@ -90,7 +90,7 @@ class Scanner:
             raise InputError(
                 f"a class raster holds at most {NODATA} classes",
                 value=f"{model} ({len(classifier.classes)})",
-                mend="train a model of fewer classes",
+                hint="train a model of fewer classes",
             )
         file = model / MANIFEST_NAME if model.is_dir() else model
         return cls(model, classifier, hashlib.sha256(file.read_bytes()).hexdigest(), options, run, progress)
@@ -146,7 +146,7 @@ class Scanner:
             raise InputError(
                 "the changes since --before are polygons",
                 value="--vector none",
-                mend="choose geojson or gpkg",
+                hint="choose geojson or gpkg",
             )
         earlier = RasterReader(before, self.options.reading)
         sizes = [(x.height, x.width) for x in (earlier, after)]
@@ -154,14 +154,14 @@ class Scanner:
             raise InputError(
                 "the pictures of the two dates are on different grids",
                 value=f"{before} and {picture}",
-                mend="bring them onto one grid first, for instance with gdalwarp",
+                hint="bring them onto one grid first, for instance with gdalwarp",
             )
         return earlier.files
 
     def _check_folder(self, folder: Path, before: Path | None) -> None:
         if before or self.options.reading.mask:
             raise InputError(
-                "--before and --mask go with one picture, not with a folder", value=folder, mend="name a file"
+                "--before and --mask go with one picture, not with a folder", value=folder, hint="name a file"
             )
 
     def _folder(self, folder: Path, pictures: Mapping[str, Path], output: Path) -> dict[str, Any]:
@@ -178,7 +178,7 @@ class Scanner:
             raise InputError(
                 f"{len(faults)} of {len(pictures)} pictures are not scanned",
                 value=f"{faults[0]}{', …' if len(faults) > 1 else ''}",
-                mend="correct or remove them and run the same command again; the others are kept",
+                hint="correct or remove them and run the same command again; the others are kept",
             )
         coverage = Coverage(
             sum(x["classified_pixels"] for x in summaries), sum(x["coverage"]["pixels"] for x in summaries)
@@ -273,7 +273,7 @@ class Scanner:
             raise InputError(
                 "the picture has no georeference, so its pixels have no area",
                 value=f"--minimum-area {hectares:g}",
-                mend="say --minimum-pixels",
+                hint="say --minimum-pixels",
             )
         return math.ceil(hectares * SQUARE_METRES / areas.middle)
 

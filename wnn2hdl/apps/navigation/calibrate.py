@@ -150,7 +150,7 @@ def calibrate(
         raise InputError(
             f"calibration takes at least {MIN_FRAMES} frames",
             value=len(poses),
-            mend="calibrate on more frames",
+            hint="calibrate on more frames",
         )
     fit = _Fit(grid, MapIndex(grey_map, grid.valid), list(frames), list(poses))
     done = iter(range(1, 100))
@@ -227,7 +227,7 @@ class _Fit:
             raise InputError(
                 "too few calibration frames match the map",
                 value=f"{len(seen)} of {len(sights)}",
-                mend="calibrate on frames that the map shows, or correct their positions",
+                hint="calibrate on frames that the map shows, or correct their positions",
             )
         ahead, right = (np.array([getattr(sight, name) for sight in seen]) for name in ("ahead_m", "right_m"))
         return float(np.median(np.abs(ahead - _steps(ahead))) + np.median(np.abs(right - np.median(right))))

@@ -89,7 +89,7 @@ class Camera:
             raise InputError(
                 "not the coefficients of a lens",
                 value=list(self.distortion),
-                mend="give k1, k2, p1, p2 and k3, or none",
+                hint="give k1, k2, p1, p2 and k3, or none",
             )
         for name in ("tilt_deg", "lean_deg"):
             if not abs(getattr(self, name)) <= MAX_TILT_DEG:
@@ -125,20 +125,20 @@ class Camera:
         except OSError as error:
             raise InputError("cannot read the camera", value=f"{path} ({error.strerror})") from error
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError("the camera is no TOML", value=f"{path} ({error})", mend=_FORM) from error
+            raise InputError("the camera is no TOML", value=f"{path} ({error})", hint=_FORM) from error
         if not isinstance(table, dict):
-            raise InputError("no camera in the file", value=path, mend=_FORM)
+            raise InputError("no camera in the file", value=path, hint=_FORM)
         return cls._of_table(table, path)
 
     @classmethod
     def _of_table(cls, table: dict[str, Any], path: Path) -> Self:
         unknown = sorted(table.keys() - _KEYS)
         if unknown:
-            raise InputError(f"the camera {path} has an unknown key", value=", ".join(unknown), mend=_FORM)
+            raise InputError(f"the camera {path} has an unknown key", value=", ".join(unknown), hint=_FORM)
         needed = {"focal"} if "focal" in table else {"fx", "fy", "cx", "cy"}
         missing = sorted((needed | {"width", "height"}) - table.keys())
         if missing:
-            raise InputError(f"the camera {path} lacks a key", value=", ".join(missing), mend=_FORM)
+            raise InputError(f"the camera {path} lacks a key", value=", ".join(missing), hint=_FORM)
         stabilised = table.get("stabilised", False)
         if not isinstance(stabilised, bool):
             raise InputError(
@@ -165,7 +165,7 @@ class Camera:
             return cls(**numbers, distortion=lens, stabilised=stabilised)
         except InputError as error:
             raise InputError(
-                f"the camera {path}: {error.fault}", value=error.value, mend=error.mend
+                f"the camera {path}: {error.fault}", value=error.value, hint=error.hint
             ) from None
 
     def scaled(self, width: int, height: int) -> Self:
@@ -183,7 +183,7 @@ class Camera:
             raise InputError(
                 f"{what}: another shape than the camera's",
                 value=f"{width}x{height}, not {self.width}x{self.height}",
-                mend="give the camera as it is for these frames",
+                hint="give the camera as it is for these frames",
             )
 
     def resized(self, width: int, height: int) -> Self:

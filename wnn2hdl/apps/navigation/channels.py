@@ -163,5 +163,5 @@ def _check(channels: Channels, inside: NDArray[np.bool_]) -> None:
         raise InputError(
             "these are no binary images to match",
             value=f"{channels.dtype} {channels.shape} with {inside.dtype} {inside.shape}",
-            mend="use bool of shape [channels, height, width] and of [height, width]",
+            hint="use bool of shape [channels, height, width] and of [height, width]",
         )

@@ -128,7 +128,7 @@ def run_flight(
         raise InputError(
             "no frame shows anything of the map",
             value=recording.map_name,
-            mend="check the positions, the heights and the camera",
+            hint="check the positions, the heights and the camera",
         )
     searched, acceptances = [], {}
     for kind, half in searches.items():

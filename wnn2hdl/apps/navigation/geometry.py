@@ -141,13 +141,13 @@ def _laid(
         raise InputError(
             f"the frame {pose.frame} shows less than {SIDE}x{SIDE} pixels of ground to find edges in",
             value=f"{columns}x{rows} of {gsd_m:g} m",
-            mend="check the focal length, the heights and the map's ground sample distance",
+            hint="check the focal length, the heights and the map's ground sample distance",
         )
     if columns * rows > MOST_PIXELS:
         raise InputError(
             f"the frame {pose.frame} shows more than {MOST_PIXELS >> 20} million pixels of ground",
             value=f"{columns}x{rows} of {gsd_m:g} m",
-            mend="check its height and the focal length, or give a coarser map",
+            hint="check its height and the focal length, or give a coarser map",
         )
     middle = ((west + east) / 2, (north + south) / 2)
     focal = height_m / gsd_m
@@ -212,7 +212,7 @@ def _footprint(
         raise InputError(
             f"the frame {pose.frame} shows no ground",
             value=f"pitch {pose.pitch_deg:g}, roll {pose.roll_deg:g}",
-            mend="check the angles of its pose and the camera's tilt",
+            hint="check the angles of its pose and the camera's tilt",
         )
     reach = np.minimum(slope, steepest) * pose.height_m / np.maximum(flat, 1e-12)
     east, south = rays[:, 0] * reach, rays[:, 1] * reach

@@ -83,7 +83,7 @@ def read_poses(path: Path) -> tuple[Pose, ...]:
                 raise InputError(
                     f"the poses {path} lack a column",
                     value=", ".join(missing),
-                    mend=f"the first line names {','.join(needed)}",
+                    hint=f"the first line names {','.join(needed)}",
                 )
             poses = tuple(_pose(row, f"line {reader.line_num} of {path}") for row in reader)
     except OSError as error:
@@ -91,12 +91,12 @@ def read_poses(path: Path) -> tuple[Pose, ...]:
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError("the poses are no CSV", value=f"{path} ({error})") from error
     if not poses:
-        raise InputError("no poses", value=path, mend="give one line a frame")
+        raise InputError("no poses", value=path, hint="give one line a frame")
     seen: set[str] = set()
     for pose in poses:
         if pose.frame in seen:
             raise InputError(
-                f"a frame occurs twice in {path}", value=pose.frame, mend="keep one of its lines"
+                f"a frame occurs twice in {path}", value=pose.frame, hint="keep one of its lines"
             )
         seen.add(pose.frame)
     numbers = frame_numbers([pose.frame for pose in poses])
@@ -117,11 +117,11 @@ def frame_numbers(names: Sequence[str]) -> list[int] | None:
     return [number for _, number in parts] if told else None
 
 
-def require_located(poses: Sequence[Pose], why: str, mend: str) -> None:
+def require_located(poses: Sequence[Pose], why: str, hint: str) -> None:
     """Raise InputError, which says why and what to do, unless it is known where all frames were taken."""
     for pose in poses:
         if not pose.located:
-            raise InputError(f"{why}, and a frame has none", value=pose.frame, mend=mend)
+            raise InputError(f"{why}, and a frame has none", value=pose.frame, hint=hint)
 
 
 def frame_files(poses: Sequence[Pose], folder: Path) -> dict[Pose, Path]:
@@ -134,11 +134,11 @@ def frame_files(poses: Sequence[Pose], folder: Path) -> dict[Pose, Path]:
     for pose, file in files.items():
         if Path(pose.frame).name != pose.frame:
             raise InputError(
-                "a frame's name is a path", value=pose.frame, mend=f"give the names of files in {folder}"
+                "a frame's name is a path", value=pose.frame, hint=f"give the names of files in {folder}"
             )
         if not file.is_file():
             raise InputError(
-                "a frame of the poses is missing", value=file, mend="put it there or drop its line"
+                "a frame of the poses is missing", value=file, hint="put it there or drop its line"
             )
     return files
 

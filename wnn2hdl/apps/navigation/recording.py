@@ -115,7 +115,7 @@ def split(poses: Sequence[Pose], calibrating: int) -> tuple[tuple[Pose, ...], tu
         raise InputError(
             "too few frames are left to score",
             value=f"{calibrating} of {len(poses)} calibrate",
-            mend="calibrate on fewer, or give the poses of other frames",
+            hint="calibrate on fewer, or give the poses of other frames",
         )
     chosen = set(np.linspace(0, len(poses) - 1, calibrating).round().astype(int).tolist())
     return (

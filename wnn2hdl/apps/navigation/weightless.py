@@ -173,7 +173,7 @@ def learn(
     if not pairs.any():
         raise InputError(
             "no training frame shows anything of the map",
-            mend="train on frames that the map shows, or correct their positions",
+            hint="train on frames that the map shows, or correct their positions",
         )
     return WeightlessEdges(gsd_m, rule.side, EdgeFilter("learned", _patterns(pairs, rule.east.patterns)))
 

@@ -65,19 +65,19 @@ class WorldMap:
                     raise InputError(
                         "the map has no georeference",
                         value=path,
-                        mend="give a GeoTIFF with a coordinate system and a transform",
+                        hint="give a GeoTIFF with a coordinate system and a transform",
                     )
                 if dataset.colorinterp[0].name == "palette":
                     raise InputError(
                         "the map holds indices of a colour table",
                         value=path,
-                        mend="make it red, green and blue first (gdal_translate -expand rgb)",
+                        hint="make it red, green and blue first (gdal_translate -expand rgb)",
                     )
                 if dataset.dtypes[0] != "uint8":
                     raise InputError(
                         "the map's samples are not 8 bits",
                         value=f"{path} ({dataset.dtypes[0]})",
-                        mend="scale them to bytes first (gdal_translate -ot Byte -scale)",
+                        hint="scale them to bytes first (gdal_translate -ot Byte -scale)",
                     )
                 return cls(path, dataset.shape, dataset.transform, dataset.crs)
         except rasterio.errors.RasterioError as error:
@@ -115,7 +115,7 @@ class WorldMap:
             raise InputError(
                 "the map's coordinate system tells no latitudes and longitudes",
                 value=self.crs.to_string(),
-                mend="give a map in a geographic or projected coordinate system, as UTM",
+                hint="give a map in a geographic or projected coordinate system, as UTM",
             ) from error
 
     def to_pixel(
@@ -152,7 +152,7 @@ class WorldMap:
             raise InputError(
                 "the map's pixels have no size on the ground",
                 value=tuple(self.transform)[:6],
-                mend="give it a transform that can be inverted",
+                hint="give it a transform that can be inverted",
             )
         return float(np.sqrt(area))
 
@@ -184,13 +184,13 @@ class WorldMap:
             raise InputError(
                 f"the map has less than {SIDE}x{SIDE} pixels to find edges in",
                 value=f"{columns}x{rows} of {gsd_m:g} m",
-                mend="give a larger map",
+                hint="give a larger map",
             )
         if rows * columns > _MOST_PIXELS:
             raise InputError(
                 "the map is too large to be laid on a grid",
                 value=f"{columns}x{rows} pixels of {gsd_m:g} m",
-                mend="cut the country that was flown over out of it",
+                hint="cut the country that was flown over out of it",
             )
         transform = rasterio.Affine(gsd_m, 0, west, 0, -gsd_m, north)
         picture, shown = self._pixels()
@@ -240,7 +240,7 @@ class WorldMap:
             raise InputError(
                 "the map is not on the earth",
                 value=f"{self.crs.to_string()}, {tuple(self.transform)[:6]}",
-                mend="correct its coordinate system or its transform",
+                hint="correct its coordinate system or its transform",
             )
 
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:

@@ -121,7 +121,7 @@ def parse_name(name: str) -> tuple[Cell, int]:
     """
     match = _NAME.fullmatch(name)
     if match is None:
-        raise InputError("no such trial", value=repr(name), mend="name one of the table, as n4-k16-t3")
+        raise InputError("no such trial", value=repr(name), hint="name one of the table, as n4-k16-t3")
     n, k, number = map(int, match.groups())
     return (n, k), number
 

@@ -34,5 +34,5 @@ def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Recor
         raise ToolError(
             "a process of the sweep was killed",
             value=f"{pool.n_jobs} ran",
-            mend="run the same command again: finished trials are kept",
+            hint="run the same command again: finished trials are kept",
         ) from error

@@ -86,7 +86,7 @@ def draw(dataset: Dataset, *, pixels: int, seed: int, progress: Progress) -> Pix
         InputError: fewer than two images, one that cannot be read, or a class that is missing on a side.
     """
     if len(dataset) < 2:
-        raise InputError("a sweep needs images to hold out", value=f"{len(dataset)} image", mend="give two")
+        raise InputError("a sweep needs images to hold out", value=f"{len(dataset)} image", hint="give two")
     trained, held = split(dataset.names, len(dataset) // 2)
     histograms = {
         image.name: colour_histogram(image, len(dataset.classes))
@@ -99,7 +99,7 @@ def draw(dataset: Dataset, *, pixels: int, seed: int, progress: Progress) -> Pix
                 raise InputError(
                     f"no pixel of the {side} images is labelled {label}",
                     value=f"{len(names)} images",
-                    mend="add images that show every class",
+                    hint="add images that show every class",
                 )
     sample = _sample([histograms[name] for name in trained], pixels, np.random.default_rng([seed, 0]))
     merged = _merge([histograms[name] for name in trained])
@@ -123,7 +123,7 @@ def code_counts(sets: PixelSets, bits: tuple[str, ...]) -> CodeCounts:
         raise InputError(
             "too many input bits for one truth table",
             value=len(bits),
-            mend=f"choose at most {MAX_TABLE_INPUTS}",
+            hint=f"choose at most {MAX_TABLE_INPUTS}",
         )
     encoder = BitSelect(bits)
     classes, size = len(sets.classes), 1 << encoder.width

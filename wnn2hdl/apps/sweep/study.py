@@ -165,7 +165,7 @@ def find_trial(plan: Plan, folder: Path, name: str) -> Trial:
     """
     if searching.position(name) is None:
         return plan.recipe.trial(*parse_name(name))
-    absent = InputError("no such trial", value=repr(name), mend="run the sweep with --search first")
+    absent = InputError("no such trial", value=repr(name), hint="run the sweep with --search first")
     if not _search_file(plan, folder).exists():
         raise absent
     with search_results(plan, folder) as results:
@@ -227,7 +227,7 @@ def _check_identity(sets: PixelSets, recipe: Recipe, path: Path) -> None:
         raise InputError(
             f"the folder holds a sweep with another {' and '.join(different)}",
             value=path.parent,
-            mend="choose another folder, or the same images and options to go on",
+            hint="choose another folder, or the same images and options to go on",
         )
     if not path.exists():
         write_json(path, identity)

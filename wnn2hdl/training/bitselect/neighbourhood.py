@@ -115,16 +115,16 @@ def _check(windows: NDArray[np.uint8], labels: NDArray[np.uint8], classes: tuple
         raise InputError(
             "neighbourhoods tell two classes apart",
             value=", ".join(classes),
-            mend="train discriminators for more, or merge classes",
+            hint="train discriminators for more, or merge classes",
         )
     if windows.shape[1] not in SIZES:
         raise InputError(
-            "a neighbourhood has 3x3 or 5x5 pixels", value=windows.shape[1], mend="ask for 3 or 5"
+            "a neighbourhood has 3x3 or 5x5 pixels", value=windows.shape[1], hint="ask for 3 or 5"
         )
     for index, name in enumerate(classes):
         if not (labels == index).any():
             raise InputError(
-                "a class has no training pixels", value=name, mend="give images that show every class"
+                "a class has no training pixels", value=name, hint="give images that show every class"
             )
 
 

@@ -56,13 +56,13 @@ def select_bits(
         raise InputError(
             "bit selection tells two classes apart",
             value=", ".join(classes),
-            mend="train discriminators for more, or merge classes",
+            hint="train discriminators for more, or merge classes",
         )
     if not 1 <= luts <= MOST_LUTS:
         raise InputError(
             "bit selection makes classifiers of 1 to 3 LUTs a pixel",
             value=luts,
-            mend=f"ask for 1 to {MOST_LUTS}",
+            hint=f"ask for 1 to {MOST_LUTS}",
         )
     spread = _training_colours(images, classes)
     mass = signed_mass(spread, fit_reference(spread))
@@ -100,7 +100,7 @@ def _training_colours(images: Sequence[Histogram], classes: tuple[str, ...]) -> 
     for index, name in enumerate(classes):
         if not any(image.counts[index].any() for image in images):
             raise InputError(
-                "a class has no training pixels", value=name, mend="give images that show every class"
+                "a class has no training pixels", value=name, hint="give images that show every class"
             )
     means = [
         image.counts[0] @ unpacked(image.colours.astype(np.int64)) / image.counts[0].sum()

@@ -84,7 +84,7 @@ def choose_threshold(
         raise InputError(
             "a threshold needs matches whose error is known",
             value=f"{len(confidences)} matches, {len(errors_m)} errors",
-            mend="calibrate on at least one frame",
+            hint="calibrate on at least one frame",
         )
     values = np.asarray(confidences, dtype=np.float64)
     good = np.asarray(errors_m, dtype=np.float64) < limit_m

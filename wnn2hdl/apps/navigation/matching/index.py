@@ -56,7 +56,7 @@ class MapIndex:
     ) -> None:
         self._image, self._valid = _checked(image, valid)
         if reduction not in (1, 2, 4, 8):
-            raise InputError("a map cannot be shrunk by this", value=reduction, mend="use 1, 2, 4 or 8")
+            raise InputError("a map cannot be shrunk by this", value=reduction, hint="use 1, 2, 4 or 8")
         self._reduction = reduction
         self._direct = direct
         self._tiles: dict[int, Tiles] = {}
@@ -180,7 +180,7 @@ def _checked(picture: Picture, inside: NDArray[np.bool_] | None) -> tuple[Pictur
         raise InputError(
             "this is no picture to match",
             value=f"{picture.dtype} of shape {picture.shape}",
-            mend="use bool, uint8 or float32 of shape [height, width]",
+            hint="use bool, uint8 or float32 of shape [height, width]",
         )
     if inside is None:
         return picture, np.ones(picture.shape, dtype=np.bool_)
@@ -188,6 +188,6 @@ def _checked(picture: Picture, inside: NDArray[np.bool_] | None) -> tuple[Pictur
         raise InputError(
             "a mask does not fit its picture",
             value=f"{inside.dtype} {inside.shape}, {picture.shape}",
-            mend="use bool of the picture's shape",
+            hint="use bool of the picture's shape",
         )
     return picture, inside

@@ -82,5 +82,5 @@ def check_score(score: Score, picture: Picture) -> None:
         raise InputError(
             "the match count compares bits, not grey levels",
             value=picture.dtype,
-            mend="use a binary picture, or the score ncc",
+            hint="use a binary picture, or the score ncc",
         )
