@@ -61,7 +61,7 @@ class MatchCompressor(Part):
 
     Members:
         bits: In, one bit of each pair.
-        reference: In, the other.
+        reference_bits: In, the other.
         total: Out, 2 bits, the number of equal pairs. One LUT for each.
     """
 
@@ -72,19 +72,20 @@ class MatchCompressor(Part):
             raise ValueError(f"a match compressor compares 2 or 3 pairs, not {pairs}")
         self.pairs = pairs
         self.module_name = f"match_{pairs}"
-        super().__init__({"bits": In(pairs), "reference": In(pairs), "total": Out(2)})
+        super().__init__({"bits": In(pairs), "reference_bits": In(pairs), "total": Out(2)})
 
     def elaborate(self, platform: object) -> Module:
         """XNOR and a full adder, as equations."""
         m = Module()
         same = [
-            named(m, f"same_{i}", ~(self.bits[i] ^ self.reference[i]), platform) for i in range(self.pairs)
+            named(m, f"same_{i}", ~(self.bits[i] ^ self.reference_bits[i]), platform)
+            for i in range(self.pairs)
         ]
         m.d.comb += self.total.eq(Cat(_full_adders(m, {0: same}, 2, platform)))
         return m
 
 
-def add_columns(m: Module, columns: Columns, width: int, platform: object) -> list[Value]:
+def add_columns(m: Module, columns: Columns, width: int, *, name: str, platform: object) -> list[Value]:
     """Add up columns of bits with compressors, placed as submodules of ``m``.
 
     Columns are worked off from the least significant one, each with the compressor that takes away most bits
@@ -94,6 +95,7 @@ def add_columns(m: Module, columns: Columns, width: int, platform: object) -> li
         m: the module under construction.
         columns: the bits; emptied.
         width: bits of the sum; what lies above is known to be 0.
+        name: what the names of the instances begin with.
         platform: the platform of ``m``.
 
     Returns:
@@ -108,7 +110,7 @@ def add_columns(m: Module, columns: Columns, width: int, platform: object) -> li
             ones, twos = _choose(len(column), len(above) if weight + 1 < width else 0)
             outputs = min((ones + 2 * twos).bit_length(), width - weight)
             unit = Compressor(ones=ones, twos=twos, width=outputs)
-            place(m, f"add_{number}", unit, platform)
+            place(m, f"{name}_add_{number}", unit, platform)
             number += 1
             m.d.comb += unit.one.eq(Cat(_take(column, ones)))
             if twos:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from amaranth.hdl import Fragment, Instance, Module
+from amaranth.hdl import ClockSignal, Fragment, Instance, Module
 from amaranth.lib import wiring
 
 
@@ -12,10 +12,17 @@ class Part(wiring.Component):
     Attributes:
         module_name: name of that module; components of one name must be equal.
         keep_hierarchy: whether a synthesiser must not dissolve the module into its surroundings.
+        clocked: whether it has registers, so that its module has the port ``clk``.
     """
 
     module_name: str
     keep_hierarchy = False
+    clocked = False
+
+    @property
+    def summary(self) -> str:
+        """What it computes, for a comment above its module: the first line of its docstring."""
+        return (type(self).__doc__ or "").partition("\n")[0]
 
 
 @dataclass
@@ -27,21 +34,29 @@ class Emission:
     in Amaranth's simulator, parts are plain submodules and no vendor cell is used.
 
     Attributes:
+        prefix: what the names of all modules begin with, so that two designs can stand in one project.
         parts: the parts found so far, by module name; a part comes after the parts inside it.
     """
 
+    prefix: str = ""
     parts: dict[str, Part] = field(default_factory=dict)
+
+    def module(self, part: Part) -> str:
+        """Name of a part's module in the emitted text."""
+        return f"{self.prefix}{part.module_name}"
 
     def instance(self, part: Part) -> Instance:
         """An instance of the part's module, connected to the part's members."""
         # Elaborated here so that its own parts are found, before it, and Amaranth sees that it is in use.
         Fragment.get(part, self)
-        self.parts.setdefault(part.module_name, part)
+        self.parts.setdefault(self.module(part), part)
         ports = {
             f"{'i' if member.flow == wiring.In else 'o'}_{name}": getattr(part, name)
             for name, member in part.signature.members.items()
         }
-        return Instance(part.module_name, **ports)
+        if part.clocked:
+            ports["i_clk"] = ClockSignal()
+        return Instance(self.module(part), **ports)
 
 
 def place(m: Module, name: str, part: Part, platform: object) -> None:

@@ -1,124 +1,192 @@
-"""From tables, covers and LUT networks to Amaranth components."""
+"""From a circuit to an Amaranth component: each kind of node has its hardware here."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
-from hdl_templates import bit_match, discriminator, lookup
-from hdl_templates import block as block_template
-from hdl_templates import block_match as block_match_template
-from hdl_templates import edge_filter as edge_template
-from hdl_templates import neighbourhood as neighbourhood_template
-from hdl_templates import sobel as sobel_template
-from hdl_templates.lookup import Style
-from wnn2hdl.ir import WINDOW_BITS, BitSelect, Cover, Lut, LutNetwork, Neighbourhood
+from amaranth.hdl import Cat, Module, Signal, Value
+from amaranth.lib.wiring import In, Out
 
-Logic = Cover | LutNetwork
-"""What a truth table was minimised to."""
-
-
-def pixel(
-    encoder: BitSelect, logic: Logic, *, class_count: int = 2, style: Style = "equations"
-) -> discriminator.Discriminator:
-    """The pixel classifier ``pixel``: ``rgb[23:0]`` to ``class_bits``.
-
-    Args:
-        encoder: the bits of a pixel that it reads.
-        logic: their classification; inputs are the encoder's bits, output ``j`` is bit ``j`` of the class.
-        class_count: classes told apart.
-        style: how a LUT network is written: ``equations``, or ``cells`` of the vendor.
-
-    Raises:
-        ValueError: encoder, logic and class count do not fit together.
-    """
-    return _pixel(encoder, logic, class_count, style).create()
+from hdl_templates.compressor import Columns, add_columns
+from hdl_templates.hierarchy import Part, place
+from hdl_templates.lookup import draw_network, unread_inputs
+from hdl_templates.matcher import draw_match
+from hdl_templates.ports import named, tie_off
+from hdl_templates.winner import draw_winner
+from wnn2hdl.ir import LutNetwork, Style
+from wnn2hdl.ir.circuit import Circuit, Instance, Node
+from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
+from wnn2hdl.ir.wires import Slice, Word
 
 
-def edge_filter(logic: Logic, *, style: Style = "equations") -> edge_template.EdgeFilter:
-    """The edge filter ``edge_filter``: ``bits[8:0]`` to ``edge_bit``; arguments and errors as for `pixel`."""
-    return edge_template.Parameters(_lookup(logic, style)).create()
-
-
-def block(
-    encoder: BitSelect,
-    pixel_logic: Logic,
-    edge_logic: Logic,
-    *,
-    class_count: int = 2,
-    style: Style = "equations",
-) -> block_template.Block:
-    """The block of nine pixel classifiers and edge filter; arguments and errors as for `pixel`."""
-    return _block(encoder, pixel_logic, edge_logic, class_count, style).create()
-
-
-def block_match(
-    encoder: BitSelect,
-    pixel_logic: Logic,
-    edge_logic: Logic,
-    *,
-    class_count: int = 2,
-    style: Style = "equations",
-) -> block_match_template.BlockMatch:
-    """The block with the matcher on its nine bits; arguments and errors as for `pixel`."""
-    block_parameters = _block(encoder, pixel_logic, edge_logic, class_count, style)
-    return block_match_template.Parameters(block_parameters).create()
-
-
-def neighbourhood(
-    encoder: Neighbourhood, taps: Sequence[Logic], last: Logic, *, style: Style = "equations"
-) -> neighbourhood_template.Neighbourhood:
-    """The classifier ``neighbourhood`` of a pixel and its neighbours: ``window`` to ``class_bits``.
+def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
+    """The hardware of a circuit whose tables are mapped to LUTs.
 
     Args:
-        encoder: the taps and their places.
-        taps: for each tap its logic, one output.
-        last: the classification of the taps' bits; output ``j`` is bit ``j`` of the class.
-        style: as for `pixel`.
+        circuit: the circuit.
+        style: how its LUT networks are written.
 
     Raises:
-        ValueError: encoder and logic do not fit together.
+        ValueError: when it is elaborated with a table that is no LUT network.
     """
-    if last.inputs != encoder.names:
-        raise ValueError(f"the logic reads {last.inputs}, but the encoder gives {encoder.names}")
-    tables = tuple(
-        (encoder.size * tap.row + tap.column, _pixel(tap.pixel, logic, 2, style))
-        for tap, logic in zip(encoder.taps, taps, strict=True)
-    )
-    return neighbourhood_template.Parameters(encoder.size, tables, _lookup(last, style)).create()
+    return CircuitComponent(circuit=circuit, style=style)
 
 
-def match(width: int = WINDOW_BITS) -> bit_match.BitMatch:
-    """Match-and-count of two words: ``bits`` and ``reference`` to ``match_count``."""
-    return bit_match.Parameters(width).create()
+class CircuitComponent(Part):
+    """A circuit; its ports are those of the circuit, its latency is `Circuit.latency`.
 
+    Args:
+        circuit: the circuit.
+        style: how its LUT networks are written.
+    """
 
-def sobel(threshold: int = sobel_template.DEFAULT_THRESHOLD) -> sobel_template.Sobel:
-    """The Sobel baseline: ``window[71:0]`` of nine greys to ``edge_bit``."""
-    return sobel_template.Parameters(threshold).create()
-
-
-def _block(
-    encoder: BitSelect, pixel_logic: Logic, edge_logic: Logic, class_count: int, style: Style
-) -> block_template.Parameters:
-    edges = edge_template.Parameters(_lookup(edge_logic, style))
-    return block_template.Parameters(_pixel(encoder, pixel_logic, class_count, style), edges)
-
-
-def _pixel(encoder: BitSelect, logic: Logic, class_count: int, style: Style) -> discriminator.Parameters:
-    if logic.inputs != encoder.names:
-        raise ValueError(f"the logic reads {logic.inputs}, but the encoder gives {encoder.names}")
-    return discriminator.Parameters(encoder.pixel_positions, _lookup(logic, style), class_count)
-
-
-def _lookup(logic: Logic, style: Style) -> lookup.Lookup:
-    if isinstance(logic, Cover):
-        terms = tuple(
-            tuple((cube.mask, cube.value) for cube in logic.cubes if cube.outputs >> position & 1)
-            for position in range(len(logic.outputs))
+    def __init__(self, *, circuit: Circuit, style: Style) -> None:
+        self.circuit = circuit
+        self.style = style
+        self.module_name = circuit.name
+        self.clocked = any(
+            isinstance(node, Register)
+            for definition in circuit.definitions().values()
+            for node in definition.nodes
         )
-        return lookup.SumOfProducts(logic.inputs, logic.outputs, terms)
-    cells = tuple(
-        lookup.LutCell(cell.name, cell.inputs, cell.init)
-        if isinstance(cell, Lut)
-        else lookup.MuxCell(cell.name, cell.low, cell.high, cell.select)
-        for cell in logic.cells
+        inputs = {port.name: In(port.width) for port in circuit.inputs}
+        super().__init__(inputs | {port.name: Out(port.width) for port in circuit.outputs})
+
+    @property
+    def summary(self) -> str:
+        """See `Part.summary`."""
+        latency = self.circuit.latency
+        timing = f"Latency {latency} cycles." if latency else "Combinational."
+        return f"{self.circuit.summary} {timing}"
+
+    def elaborate(self, platform: object) -> Module:
+        """Draws the nodes one after the other."""
+        m = Module()
+        scope = _Scope(
+            m, self, platform, {port.name: getattr(self, port.name) for port in self.circuit.inputs}
+        )
+        for node in self.circuit.nodes:
+            _HARDWARE[type(node)](scope, node)
+        m.d.comb += [getattr(self, port).eq(scope.read(word)) for port, word in self.circuit.drivers.items()]
+        tie_off(m, scope.unread_bits(), platform)
+        return m
+
+
+@dataclass
+class _Scope:
+    """A module under construction.
+
+    Attributes:
+        m: the module.
+        part: the component that it belongs to.
+        platform: what it is elaborated for.
+        nets: the value of each net that is driven so far.
+    """
+
+    m: Module
+    part: CircuitComponent
+    platform: object
+    nets: dict[str, Value]
+
+    def read(self, word: Word) -> Value:
+        """The value of a word."""
+        parts = [self.nets[part.net][part.low : part.low + part.width] for part in word]
+        return parts[0] if len(parts) == 1 else Cat(*parts)
+
+    def unread_bits(self) -> list[Value]:
+        """Slices of input ports that no node and no output reads."""
+        circuit = self.part.circuit
+        read: dict[str, set[int]] = {port.name: set() for port in circuit.inputs}
+        words = [word for node in circuit.nodes for word in _read_words(node)]
+        for part in (part for word in [*words, *circuit.drivers.values()] for part in word):
+            read.get(part.net, set()).update(range(part.low, part.low + part.width))
+        return [
+            self.nets[port.name][bit]
+            for port in circuit.inputs
+            for bit in range(port.width)
+            if bit not in read[port.name]
+        ]
+
+
+def _read_words(node: Node) -> tuple[Word, ...]:
+    """The words whose bits the hardware of a node reads: a LUT network may leave inputs unread."""
+    if isinstance(node, Table) and isinstance(node.function, LutNetwork):
+        bits = [Slice(part.net, part.low + i) for part in node.word for i in range(part.width)]
+        unread = set(unread_inputs(node.function))
+        return (tuple(bit for position, bit in enumerate(bits) if position not in unread),)
+    return node.reads
+
+
+def _table(scope: _Scope, node: Table) -> None:
+    network = node.function
+    if not isinstance(network, LutNetwork):
+        raise ValueError(f"{node.name} is not mapped to LUTs")
+    circuit = scope.part.circuit
+    ports = {port.name: port for port in circuit.inputs}
+    alone = sum(isinstance(other, Table) for other in circuit.nodes) == 1
+    prefix = "" if alone else f"{node.name}_"
+    bits = list(scope.read(node.word))
+    # Chosen bits of a port go by the names that the model has for them; a whole port has a name already.
+    if not any(node.word == port.word for port in circuit.inputs):
+        places = [part.net for part in node.word for _ in range(part.width)]
+        unread = set(unread_inputs(network))
+        for position, (name, net) in enumerate(zip(network.inputs, places, strict=True)):
+            if net in ports and position not in unread:
+                bits[position] = named(scope.m, f"{prefix}{name}", bits[position], scope.platform)
+    outputs = draw_network(
+        scope.m, network, bits, style=scope.part.style, prefix=prefix, platform=scope.platform
     )
-    return lookup.LutNetwork(logic.inputs, cells, logic.outputs, style)
+    scope.nets[node.name] = Cat(*outputs)
+
+
+def _threshold(scope: _Scope, node: Threshold) -> None:
+    scope.nets[node.name] = named(scope.m, node.name, scope.read(node.word) >= node.at_least, scope.platform)
+
+
+def _sum(scope: _Scope, node: Sum) -> None:
+    columns: Columns = {}
+    for bit, weight in zip(scope.read(node.word), node.weights, strict=True):
+        for power in range(weight.bit_length()):
+            if weight >> power & 1:
+                columns.setdefault(power, []).append(bit)
+    total = add_columns(scope.m, columns, node.drives[node.name], name=node.name, platform=scope.platform)
+    scope.nets[node.name] = Cat(*total)
+
+
+def _match(scope: _Scope, node: Match) -> None:
+    word, other = scope.read(node.word), scope.read(node.other)
+    scope.nets[node.name] = draw_match(scope.m, word, other, name=node.name, platform=scope.platform)
+
+
+def _argmax(scope: _Scope, node: ArgMax) -> None:
+    words = [scope.read(word) for word in node.words]
+    scope.nets[node.name] = draw_winner(scope.m, words, tie=node.tie, name=node.name, platform=scope.platform)
+
+
+def _register(scope: _Scope, node: Register) -> None:
+    value = scope.read(node.word)
+    for cycle in range(1, node.cycles + 1):
+        name = node.name if cycle == node.cycles else f"{node.name}_{cycle}"
+        stage = Signal(len(value), name=name, reset_less=True)
+        scope.m.d.sync += stage.eq(value)
+        value = stage
+    scope.nets[node.name] = value
+
+
+def _instance(scope: _Scope, node: Instance) -> None:
+    part = component(node.circuit, style=scope.part.style)
+    place(scope.m, node.name, part, scope.platform)
+    scope.m.d.comb += [getattr(part, port).eq(scope.read(word)) for port, word in node.inputs.items()]
+    for port in node.circuit.outputs:
+        scope.nets[f"{node.name}.{port.name}"] = getattr(part, port.name)
+
+
+_HARDWARE: Mapping[type[Node], Callable[[_Scope, Any], None]] = {
+    Table: _table,
+    Threshold: _threshold,
+    Sum: _sum,
+    Match: _match,
+    ArgMax: _argmax,
+    Register: _register,
+    Instance: _instance,
+}

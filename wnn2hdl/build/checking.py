@@ -1,24 +1,23 @@
 """Checking emitted Verilog against the model and counting what it costs, at the same time."""
 
-import tempfile
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
-from wnn2hdl.build.circuits import COUNTED, PARTS, SOBEL, Circuits
+from wnn2hdl.build import remembered
 from wnn2hdl.build.design import Design
-from wnn2hdl.build.simulating import simulate_apart
-from wnn2hdl.files import write_text
+from wnn2hdl.build.emission import SOBEL, Files
+from wnn2hdl.build.simulating import simulate_apart, simulate_parts
 from wnn2hdl.progress import Progress
-from wnn2hdl.synth import Job, Synthesis, synthesise_all, synthesise_job
+from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
+from wnn2hdl.verify.equivalence import Circuit
 from wnn2hdl.verify.proof import METHOD, Proof, prove, prove_netlists
-from wnn2hdl.verify.specification import PartName
 
-_PROVE = "prove"
+_MANY = 1 << 16
+"""Vectors above which a circuit is simulated in a process of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +30,7 @@ class Checked:
         method: of the proof.
         proof_seconds: wall clock of the proofs of Verilog and netlists together.
         vectors: how many vectors each part was simulated on.
+        remembered: parts whose simulation passed before, on the same vectors.
         seconds: when each of the checks and syntheses, which run side by side, was done.
         failure: why the circuit is not the model; None if it is.
     """
@@ -40,25 +40,32 @@ class Checked:
     method: str
     proof_seconds: float
     vectors: Mapping[str, int]
+    remembered: tuple[str, ...]
     seconds: Mapping[str, float]
     failure: str | None
 
 
-def check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
+def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> Checked:
     """Simulate in Amaranth, prove, synthesise, and prove what was synthesised.
 
-    All but the last run side by side, in processes of their own; Ctrl-C ends all of them.
+    All but the last run side by side; Ctrl-C ends all of them.
+
+    Args:
+        design: the design.
+        files: its emitted files.
+        progress: reports each check that is done.
+        afresh: simulate also what is remembered to have passed before.
 
     Raises:
         ToolError: an outside program is missing or failed.
     """
-    parts = PARTS[design.target]
-    # The matcher takes about as long as all others together. What takes longest starts first.
-    halves = [half for half in (parts[1:], parts[:1]) if half]
+    simulations = _Simulations(design, files, afresh=afresh)
+    verilog = files.verilog.read_text(encoding="utf-8")
+    emitted = {part: Circuit((verilog,), design.module(part)) for part in design.parts}
     jobs: dict[str, Callable[[], Any]] = {
-        **{f"simulate {half[-1]}": partial(simulate_apart, circuits.verilog.parent, half) for half in halves},
-        _PROVE: partial(prove, design.specification, dict.fromkeys(parts, circuits.verilog)),
-        **{name: partial(synthesise_job, job) for name, job in synthesis_jobs(design, circuits).items()},
+        **simulations.jobs,
+        "prove": partial(prove, design.specification, emitted),
+        "synthesise": partial(synthesise_all, synthesis_jobs(design, files)),
     }
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
@@ -67,27 +74,33 @@ def check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
         results[names[position]] = result
         seconds[names[position]] = time.perf_counter() - started
         progress("simulating, proving, counting", len(results), len(jobs))
-    proofs = results.pop(_PROVE)
-    vectors: dict[str, int] = {}
-    failure = None
-    for half in halves:
-        simulated, mismatch = results.pop(f"simulate {half[-1]}")
-        vectors |= simulated
-        failure = failure or mismatch
-    syntheses: dict[str, Synthesis] = {name: results[name] for name in names if name in results}
-    proofs_of_netlists = _prove_netlists(design, circuits, syntheses)
-    failures = [failure, _refutation(proofs, "Verilog"), _refutation(proofs_of_netlists, "mapped netlist")]
+    vectors, mismatch = simulations.outcome(results)
+    syntheses: dict[str, Synthesis] = results["synthesise"]
+    mapped = prove_netlists(
+        design.specification,
+        {
+            part: (circuit, Circuit((syntheses[part].netlist_verilog,), circuit.top))
+            for part, circuit in emitted.items()
+        },
+    )
+    failures = [
+        mismatch,
+        _refutation(results["prove"], "Verilog"),
+        _refutation(mapped, "mapped netlist"),
+    ]
     reason = next((text for text in failures if text), None)
     proof_seconds = sum(
-        max(proof.seconds for proof in found.values()) for found in (proofs, proofs_of_netlists)
+        max(proof.seconds for proof in found.values()) for found in (results["prove"], mapped)
     )
     status = "failed" if reason else "proved"
-    return Checked(syntheses, status, METHOD, proof_seconds, vectors, seconds, reason)
+    return Checked(
+        syntheses, status, METHOD, proof_seconds, vectors, tuple(simulations.passed), seconds, reason
+    )
 
 
-def synthesise_parts(design: Design, circuits: Circuits, progress: Progress) -> dict[str, Synthesis]:
+def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[str, Synthesis]:
     """Count what each circuit of a design takes, and the Sobel baseline."""
-    jobs = synthesis_jobs(design, circuits)
+    jobs = synthesis_jobs(design, files)
     finished: list[str] = []
 
     def done(name: str) -> None:
@@ -98,29 +111,50 @@ def synthesise_parts(design: Design, circuits: Circuits, progress: Progress) -> 
     return synthesise_all(jobs, done=done)
 
 
-def synthesis_jobs(design: Design, circuits: Circuits) -> dict[str, Job]:
+def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
     """What is counted: each circuit of a design, and the Sobel baseline."""
-    text = circuits.verilog.read_text(encoding="utf-8")
-    jobs: dict[str, Job] = {
-        part: Job(text, design.specification.part(part).module) for part in COUNTED[design.target]
-    }
-    jobs[SOBEL] = Job(circuits.sobel.read_text(encoding="utf-8"), SOBEL, baseline=True)
+    text = files.verilog.read_text(encoding="utf-8")
+    jobs = {part: Job(text, design.module(part)) for part in design.parts}
+    jobs[SOBEL] = Job(files.sobel.read_text(encoding="utf-8"), design.module(SOBEL), baseline=True)
     return jobs
 
 
-def _prove_netlists(
-    design: Design, circuits: Circuits, syntheses: Mapping[str, Synthesis]
-) -> dict[PartName, Proof]:
-    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
-        netlists = {}
-        for part in COUNTED[design.target]:
-            path = Path(name) / f"{part}.v"
-            write_text(path, syntheses[part].netlist_verilog)
-            netlists[part] = (circuits.verilog, path)
-        return prove_netlists(design.specification, netlists)
+class _Simulations:
+    """The simulations of a design: remembered ones are left out, long ones get their own process."""
+
+    def __init__(self, design: Design, files: Files, *, afresh: bool) -> None:
+        claims = {part: design.specification.claims[part] for part in design.parts}
+        stimuli = {part: claim.stimulus for part, claim in claims.items() if claim.stimulus is not None}
+        counts = {part: len(next(iter(draw().values()))) for part, draw in stimuli.items()}
+        self.long = [part for part, count in counts.items() if count >= _MANY]
+        self.keys = {part: remembered.simulation_key(design, part) for part in self.long}
+        self.passed = (
+            {} if afresh else {part: counts[part] for part in self.long if remembered.passed(self.keys[part])}
+        )
+        short = [part for part in counts if part not in self.long]
+        self.jobs: dict[str, Callable[[], Any]] = {
+            f"simulate {part}": partial(simulate_apart, files.verilog.parent, [part])
+            for part in self.long
+            if part not in self.passed
+        }
+        if short:
+            self.jobs["simulate"] = partial(simulate_parts, design, short)
+
+    def outcome(self, results: Mapping[str, Any]) -> tuple[dict[str, int], str | None]:
+        """The vectors of each part, and the first mismatch in words; None if there is none."""
+        vectors, failure = dict(self.passed), None
+        for name in self.jobs:
+            simulated, mismatch = results[name]
+            vectors |= simulated
+            failure = failure or mismatch
+        if failure is None:
+            for part, key in self.keys.items():
+                if part not in self.passed:
+                    remembered.remember(key)
+        return vectors, failure
 
 
-def _refutation(proofs: Mapping[PartName, Proof], what: str) -> str | None:
+def _refutation(proofs: Mapping[str, Proof], what: str) -> str | None:
     for part, proof in proofs.items():
         if proof.counterexample is not None:
             return f"the {what} of the {part} differs from the model {proof.counterexample}"

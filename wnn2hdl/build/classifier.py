@@ -11,7 +11,8 @@ from wnn2hdl.build.folder import failure
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.classifiers import PictureClassifier, PixelTable, familiar_colours, model_classifier
-from wnn2hdl.ir import LutNetwork, WisardModel, bits_to_codes, picture_encoder
+from wnn2hdl.ir import WisardModel, bits_to_codes, picture_encoder
+from wnn2hdl.lower.deforestation import DECISION
 
 
 def open_classifier(path: Path) -> PictureClassifier:
@@ -33,13 +34,16 @@ def open_classifier(path: Path) -> PictureClassifier:
 
 def circuit_classifier(design: Design) -> PixelTable:
     """The classifier that a design's circuit is, cared for or not; it knows what is in its care set."""
-    encoder, answers = picture_encoder(design.model), circuit_answers(design.decision)
+    model, care = design.model, design.care
+    if care is None:
+        raise InputError("a circuit without a classifier tells no classes", value=design.target.name)
     # Three classes take two bits, so a circuit may answer a fourth where it is free: taken for the last one.
-    answers = np.minimum(answers, len(design.model.classes) - 1)
-    care = design.specification.care
-    return PixelTable(design.model.classes, encoder, answers.astype(np.uint8), care)
+    answers = np.minimum(circuit_answers(design), len(model.classes) - 1).astype(np.uint8)
+    cared = care.project(tuple(range(care.width)))
+    return PixelTable(model.classes, picture_encoder(model), answers, cared)
 
 
-def circuit_answers(network: LutNetwork) -> NDArray[np.int64]:
+def circuit_answers(design: Design) -> NDArray[np.int64]:
     """Class index for every code as the circuit computes it, cared for or not: int64 ``[2**width]``."""
-    return bits_to_codes(network.evaluate(np.arange(1 << len(network.inputs))))
+    decision = next(table for _, table in design.circuit.tables() if table.name == DECISION)
+    return bits_to_codes(decision.function.evaluate(np.arange(1 << len(decision.function.inputs))))

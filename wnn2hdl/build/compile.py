@@ -4,14 +4,13 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from wnn2hdl.build.checking import Checked, check
-from wnn2hdl.build.circuits import GENERATORS, emit
 from wnn2hdl.build.classifier import circuit_classifier
 from wnn2hdl.build.design import Design
+from wnn2hdl.build.emission import emit, generators
 from wnn2hdl.build.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
 from wnn2hdl.build.planning import CompileOptions, Plan, plan
 from wnn2hdl.build.reporting import command, evaluation, model_figures, sample_picture, write_page
@@ -23,22 +22,19 @@ from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.files import write_json, write_text
 from wnn2hdl.images import Palette, write_png
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir.identifiers import name_from, require_name
 from wnn2hdl.progress import Progress
 from wnn2hdl.report import (
-    UNCLASSIFIED,
     BuildReport,
     Care,
     EdgeFigures,
     Minimised,
     PartFigures,
-    Parts,
     Proof,
     report_dict,
     report_markdown,
 )
 from wnn2hdl.synth import OPTIONS, XC7Z020, Synthesis, utilisation
-from wnn2hdl.tools import find_yosys
-from wnn2hdl.verify.specification import Specification
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,21 +89,17 @@ def compile_model(
     test_set = _test_set(options)
     if test_set is not None:
         require_same_classes(model.classes, test_set)
+    name = require_name(options.name) if options.name else name_from(folder.resolve().name)
     clock = _Clock()
     with staged(folder) as staging:
         with clock.stage("plan"):
-            planned = plan(model, options, progress)
+            planned = plan(model, name, options, progress)
         with clock.stage("emit"):
             progress("writing Verilog", 0, 1)
-            circuits = emit(
-                planned.design,
-                staging,
-                sobel_threshold=options.sobel_threshold,
-                options=_header(planned.design, options),
-            )
+            files = emit(planned.design, staging, sobel_threshold=options.sobel_threshold)
             progress("writing Verilog", 1, 1)
         with clock.stage("check and synthesise"):
-            checked = check(planned.design, circuits, progress)
+            checked = check(planned.design, files, progress, afresh=False)
         with clock.stage("evaluate"):
             measured = _measure(planned.design, test_set, progress)
         report = report_dict(_report(folder.name, planned, options, checked, measured, clock))
@@ -149,20 +141,6 @@ def _test_set(options: CompileOptions) -> Dataset | None:
     return from_masks(options.test_images, options.test_masks, palette)
 
 
-def _header(design: Design, options: CompileOptions) -> list[str]:
-    specification = design.specification
-    care = specification.care
-    kind = "pixel" if isinstance(specification, Specification) else "neighbourhood"
-    lines = [f"Mode {design.mode}: equal to the model on {int(care.sum())} of {len(care)} {kind} codes."]
-    if design.mode == "domain":
-        lines.append("On other codes it may answer anything.")
-    made = f"style {design.style}, effort {options.effort}."
-    if isinstance(specification, Specification):
-        edges = specification.edge_filter
-        made = f"Edge filter {edges.name}, {edges.size} patterns; {made}"
-    return [*lines, f"{made[0].upper()}{made[1:]}"]
-
-
 @dataclass(frozen=True)
 class _Measured:
     """What labelled images show; None where there were none, or no classifier to show them."""
@@ -174,7 +152,7 @@ class _Measured:
 
 
 def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _Measured:
-    if test_set is None or design.target in UNCLASSIFIED:
+    if test_set is None or not design.target.classifies:
         return _Measured()
     circuit = evaluate(circuit_classifier(design), test_set, progress)
     model = evaluate(model_classifier(design.model), test_set, progress)
@@ -197,12 +175,11 @@ def _report(
     design = planned.design
     edges = _edges(planned, options)
     figures = {part: PartFigures(**asdict(result.resources)) for part, result in checked.syntheses.items()}
-    yosys = find_yosys()
     return BuildReport(
         name=name,
-        target=design.target,
+        target=design.target.name,
         mode=design.mode,
-        parts=Parts(**figures),
+        parts=figures,
         count=OPTIONS,
         device=XC7Z020.name,
         utilisation=_utilisation(checked.syntheses),
@@ -214,7 +191,6 @@ def _report(
                 literals_after=cover.cover.literals,
             )
             for part, cover in planned.covers.items()
-            if part in design.used
         },
         proof=Proof(checked.status, checked.method, checked.proof_seconds, checked.failure),
         care=_care(design, measured.coverage),
@@ -230,29 +206,30 @@ def _report(
                 key: str(value) if isinstance(value, Path) else value
                 for key, value in asdict(options).items()
             },
-            "target": design.target,
+            "target": design.target.name,
+            "name": design.name,
             "edge_patterns": edges.patterns,
-            "mapping": {name: method for name, method in planned.methods.items() if name in design.used},
-            "simulated_vectors": checked.vectors,
+            "mapping": dict(planned.methods),
+            "simulated_vectors": dict(checked.vectors),
+            "simulated_before": ", ".join(checked.remembered),
         },
         hashes={"model": design.model.digest()},
-        tools={**{name: version(name) for name in GENERATORS}, yosys.name: yosys.version},
+        tools=generators(),
         seconds={**clock.seconds, **checked.seconds},
     )
 
 
 def _care(design: Design, coverage: float | None) -> Care:
-    if design.target in UNCLASSIFIED:
+    if design.care is None:
         return Care()
-    care = design.specification.care
-    return Care(int(care.sum()), coverage, len(care))
+    cared = design.care.project(tuple(range(design.care.width)))
+    return Care(int(cared.sum()), coverage, len(cared))
 
 
 def _edges(planned: Plan, options: CompileOptions) -> EdgeFigures:
-    specification, agreement = planned.design.specification, planned.agreement
-    if not isinstance(specification, Specification) or "edge" not in planned.design.used:
+    edge_filter, agreement = planned.design.edges, planned.agreement
+    if edge_filter is None:
         return EdgeFigures()
-    edge_filter = specification.edge_filter
     figures = EdgeFigures(edge_filter.name, edge_filter.size)
     if agreement is None:
         return figures

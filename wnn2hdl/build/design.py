@@ -1,30 +1,27 @@
-"""A design: what is to be computed, on which inputs, and by which networks of LUTs."""
+"""A design: the model, the circuit made from it, and all else that decides the emitted Verilog."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Literal, Self, get_args
 
-import numpy as np
-from numpy.typing import NDArray
-
-from wnn2hdl.errors import ModelFileError
+from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, LutNetwork, Neighbourhood, TruthTable, WisardModel
-from wnn2hdl.lower.table import pixel_table
-from wnn2hdl.verify.specification import AnySpecification, NeighbourhoodSpecification, Specification
+from wnn2hdl.ir import EdgeFilter, LutNetwork, Style, WisardModel
+from wnn2hdl.ir.care import CareSet
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
+from wnn2hdl.ir.identifiers import require_name
+from wnn2hdl.lower.targets import TARGETS, Target
+from wnn2hdl.verify.specification import Specification
+from wnn2hdl.verify.specify import care_sets, specify
 
 Mode = Literal["exact", "domain"]
-Style = Literal["rtl", "luts"]
-Target = Literal["block", "pixel", "edge", "match", "neighbourhood"]
 
 MODEL_FILE = "model.json"
 DESIGN_FILE = "design.json"
 FORMAT = "wnn2hdl-design"
-VERSION = 1
-
-COMBINER = "combiner"
-"""Name of the table that reads the taps of a neighbourhood."""
+VERSION = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,35 +29,55 @@ class Design:
     """Everything that decides the emitted Verilog.
 
     Attributes:
-        specification: the model and the care sets, and the edge filter behind pixels.
+        model: the model.
+        edges: the edge filter behind pixels; None if the circuit has none.
+        circuit: the target's circuit; its tables are LUT networks.
+        target: what the circuit is.
         mode: ``exact``: equal to the model on every input; ``domain``: on the care sets only.
-        target: which circuit is the top of the Verilog.
-        style: ``rtl`` writes equations, ``luts`` explicit LUT cells.
-        networks: the minimised tables of `tables`, by the same names.
+        style: how LUT networks are written.
+        name: what the names of all modules begin with.
+        header: lines of the comment at the top of the Verilog.
     """
 
-    specification: AnySpecification
-    mode: Mode
+    model: WisardModel
+    edges: EdgeFilter | None
+    circuit: Circuit
     target: Target
+    mode: Mode
     style: Style
-    networks: Mapping[str, LutNetwork]
+    name: str
+    header: tuple[str, ...]
+
+    @cached_property
+    def specification(self) -> Specification:
+        """What every circuit of the design has to compute, stated by the model."""
+        return specify(self.model, self.edges, care_sets(self.circuit))
 
     @property
-    def model(self) -> WisardModel:
-        """The model."""
-        return self.specification.model
+    def parts(self) -> dict[str, Circuit]:
+        """The circuits of the design by name, innermost first; the last is the top of the Verilog."""
+        return self.circuit.definitions()
 
     @property
-    def decision(self) -> LutNetwork:
-        """The network from the encoder's bits to the class, outputs ``class_bit0`` …."""
-        return self.networks[COMBINER if self.target == "neighbourhood" else "pixel"]
+    def networks(self) -> dict[str, LutNetwork]:
+        """The LUT networks of the design, by the names of `Circuit.tables`."""
+        return {
+            name: table.function
+            for name, table in self.circuit.tables()
+            if isinstance(table.function, LutNetwork)
+        }
 
     @property
-    def used(self) -> Mapping[str, LutNetwork]:
-        """The networks that the target is made of: a pixel classifier alone has no edge filter in it."""
-        if self.target in ("block", "neighbourhood"):
-            return self.networks
-        return {name: network for name, network in self.networks.items() if name == self.target}
+    def care(self) -> CareSet | None:
+        """The codes that the classifier is cared for on; None of a design without a classifier."""
+        if not self.target.classifies:
+            return None
+        sets = care_sets(self.circuit)
+        return sets["neighbourhood" if self.target.of_neighbours else "pixel"]
+
+    def module(self, part: str) -> str:
+        """The Verilog module of a circuit."""
+        return f"{self.name}_{part}"
 
     def save(self, folder: Path) -> None:
         """Write `MODEL_FILE` and `DESIGN_FILE` into a folder."""
@@ -71,26 +88,15 @@ class Design:
                 "format": FORMAT,
                 "version": VERSION,
                 "model_sha256": self.model.digest(),
+                "target": self.target.name,
                 "mode": self.mode,
-                "target": self.target,
                 "style": self.style,
-                **self._specification_json(),
-                **{name: network.to_json() for name, network in self.networks.items()},
+                "name": self.name,
+                "header": list(self.header),
+                "edges": None if self.edges is None else self.edges.to_json(),
+                "circuit": circuit_to_json(self.circuit),
             },
         )
-
-    def _specification_json(self) -> dict[str, Any]:
-        specification = self.specification
-        if isinstance(specification, NeighbourhoodSpecification):
-            return {"care": self._codes(specification.care)}
-        return {
-            "edges": specification.edge_filter.to_json(),
-            "pixel_care": self._codes(specification.pixel_care),
-            "window_care": self._codes(specification.window_care),
-        }
-
-    def _codes(self, care: NDArray[np.bool_]) -> list[int] | None:
-        return np.flatnonzero(care).tolist() if self.mode == "domain" else None
 
     @classmethod
     def load(cls, folder: Path) -> Self:
@@ -109,46 +115,36 @@ class Design:
                 "the design was made from another model", value=path, hint="compile the model again"
             )
         try:
-            specification = _specification(model, data)
-            networks = {name: LutNetwork.from_json(data[name]) for name in tables(specification)}
-            return cls(specification, data["mode"], data["target"], data["style"], networks)
-        except (KeyError, TypeError, ValueError, IndexError, ModelFileError) as error:
+            if data["mode"] not in get_args(Mode) or data["style"] not in get_args(Style):
+                raise ValueError(f"mode {data['mode']!r}, style {data['style']!r}")
+            design = cls(
+                model,
+                None if data["edges"] is None else EdgeFilter.from_json(data["edges"]),
+                circuit_from_json(data["circuit"]),
+                TARGETS[data["target"]],
+                data["mode"],
+                data["style"],
+                require_name(data["name"]),
+                tuple(_comment(line) for line in data["header"]),
+            )
+            design.check()
+        except (KeyError, TypeError, ValueError, IndexError, InputError) as error:
             raise ModelFileError("the design is damaged", value=f"{path} ({error})") from error
+        return design
+
+    def check(self) -> None:
+        """Raise ValueError if the circuit is not one of this target, or cares for less than its mode says."""
+        unknown = self.parts.keys() - self.specification.claims.keys()
+        if unknown:
+            raise ValueError(f"nothing is known about the circuits {', '.join(sorted(unknown))}")
+        if self.mode == "exact":
+            for name, care in care_sets(self.circuit).items():
+                if care.kind not in ("everything", "implied"):
+                    raise ValueError(f"{name} has don't-cares in exact mode")
 
 
-def tables(specification: AnySpecification) -> dict[str, TruthTable]:
-    """The tables to minimise, by name, with their don't-cares.
-
-    Of pixels these are ``pixel``, the classifier, and ``edge``, the edge filter; of a neighbourhood
-    ``tap0`` …, which are exact, and `COMBINER`.
-    """
-    if isinstance(specification, NeighbourhoodSpecification):
-        encoder = specification.encoder
-        taps = {
-            name: TruthTable.exact(tap.pixel.names, ("class_bit0",), tap.table[:, np.newaxis])
-            for name, tap in zip(encoder.names, encoder.taps, strict=True)
-        }
-        return {**taps, COMBINER: pixel_table(specification.model, specification.care)}
-    return {
-        "pixel": pixel_table(specification.model, specification.pixel_care),
-        "edge": specification.edge_filter.table().with_care(specification.window_care),
-    }
-
-
-def _specification(model: WisardModel, data: dict[str, Any]) -> AnySpecification:
-    codes = 1 << model.encoder.width
-    if isinstance(model.encoder, Neighbourhood):
-        return NeighbourhoodSpecification(model, _flags(data["care"], codes))
-    return Specification(
-        model,
-        EdgeFilter.from_json(data["edges"]),
-        _flags(data["pixel_care"], codes),
-        _flags(data["window_care"], WINDOW_CODES),
-    )
-
-
-def _flags(codes: list[int] | None, size: int) -> NDArray[np.bool_]:
-    flags = np.full(size, codes is None)
-    if codes is not None:
-        flags[codes] = True
-    return flags
+def _comment(line: object) -> str:
+    """A line of a comment, which ends with its line whatever tool reads it."""
+    if not isinstance(line, str) or not line.isprintable() or line.endswith("\\"):
+        raise ValueError(f"{line!r} is no line of a comment")
+    return line

@@ -1,19 +1,22 @@
 """From a model and the user's choices to a design: care sets, edge filter, minimised networks."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from wnn2hdl.build.design import Design, Mode, Style, Target, tables
+from wnn2hdl.build.design import Design, Mode
+from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import edge_agreement, learn_edges, survey, survey_codes
 from wnn2hdl.edges import Agreement, boundary, from_file, half_plane
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, LutNetwork, Neighbourhood, WisardModel
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, Style, WisardModel
+from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.lower.table import care_set
-from wnn2hdl.minimise import Minimised, espresso, map_luts
+from wnn2hdl.lower.targets import Ingredients, target_for
+from wnn2hdl.minimise import Minimised
+from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.progress import Progress
-from wnn2hdl.verify.specification import AnySpecification, NeighbourhoodSpecification, Specification
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,8 @@ class CompileOptions:
     """The user's choices.
 
     Attributes:
-        target: which circuit is the top of the Verilog; None for all that the model has.
+        target: what the model is compiled to; None for the first that it can be.
+        name: what the names of all Verilog modules begin with; None makes it from the name of the folder.
         mode: equal to the model on every input, or on the care set.
         care: folder of the imagery that makes the care set; needed in domain mode.
         care_minimum: how often a code must occur in it to be cared for.
@@ -29,7 +33,7 @@ class CompileOptions:
         edge_images: folder of the imagery from which patterns are learned; `care` if left out.
         edge_patterns: how many patterns are learned.
         edge_luts: learn only patterns that fit so many LUTs, 1 to 3; None sets no limit.
-        style: equations or explicit LUT cells.
+        style: how LUT networks are written: as cells of the vendor, or as equations.
         effort: 0 to 3, how long to look for a smaller circuit.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
@@ -37,7 +41,8 @@ class CompileOptions:
         sobel_threshold: the baseline's, 1 to 2040.
     """
 
-    target: Target | None = None
+    target: str | None = None
+    name: str | None = None
     mode: Mode = "exact"
     care: Path | None = None
     care_minimum: int = 1
@@ -45,7 +50,7 @@ class CompileOptions:
     edge_images: Path | None = None
     edge_patterns: int = 75
     edge_luts: int | None = None
-    style: Style = "luts"
+    style: Style = "cells"
     effort: int = 1
     test_images: Path | None = None
     test_masks: Path | None = None
@@ -64,8 +69,8 @@ class Plan:
 
     Attributes:
         design: the design.
-        covers: the two-level covers of the pixel classifier and the edge filter, for the report.
-        methods: how each network was found.
+        covers: the two-level cover of each table, for the report, by the names of `Circuit.tables`.
+        methods: how the LUT network of each table was found.
         agreement: how far the filter's edges are Canny's; None without imagery to measure it on.
     """
 
@@ -75,74 +80,70 @@ class Plan:
     agreement: Agreement | None
 
 
-def plan(model: WisardModel, options: CompileOptions, progress: Progress) -> Plan:
+def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progress) -> Plan:
     """Decide everything about a circuit but its text.
+
+    Args:
+        model: the model.
+        name: what the names of the Verilog modules begin with.
+        options: the user's choices.
+        progress: reports every stage.
 
     Raises:
         InputError: the model reads no pixels, or imagery is needed and missing or unusable.
         CheckError: a minimised table differs from the model.
     """
-    target = _target(model, options)
-    specification = _specify(model, options, progress)
-    covers: dict[str, Minimised] = {}
-    methods: dict[str, str] = {}
-    networks: dict[str, LutNetwork] = {}
-    for name, table in tables(specification).items():
-        progress(f"minimising {name}", 0, 2)
-        covers[name] = espresso(table)
-        progress(f"minimising {name}", 1, 2)
-        mapping = map_luts(table, effort=options.effort)
-        methods[name] = mapping.method
-        networks[name] = mapping.network
-        progress(f"minimising {name}", 2, 2)
-    design = Design(specification, options.mode, target, options.style, networks)
-    imagery, agreement = options.imagery, None
-    if imagery and isinstance(specification, Specification):
-        agreement = edge_agreement(specification.edge_filter, model, imagery, progress)
-    return Plan(design, covers, methods, agreement)
-
-
-def _target(model: WisardModel, options: CompileOptions) -> Target:
-    if not isinstance(model.encoder, Neighbourhood):
-        if options.target == "neighbourhood":
-            raise InputError(
-                "the model does not look at neighbours",
-                value="target neighbourhood",
-                hint="train one with --neighbourhood, or choose another target",
-            )
-        return options.target or "block"
-    if options.target not in (None, "neighbourhood"):
-        raise InputError(
-            "the model looks at neighbours, so it is a circuit of its own",
-            value=f"target {options.target}",
-            hint="leave --target out",
-        )
-    return "neighbourhood"
-
-
-def _specify(model: WisardModel, options: CompileOptions, progress: Progress) -> AnySpecification:
-    if isinstance(model.encoder, Neighbourhood):
-        return _specify_neighbourhood(model, model.encoder, options, progress)
-    edge_filter = _edge_filter(model, options, progress)
-    if options.mode == "exact":
-        return Specification.exact(model, edge_filter)
-    seen = survey(model, _care_imagery(options), progress)
-    windows = seen.windows if seen.windows.any() else np.ones(WINDOW_CODES, dtype=np.int64)
-    return Specification(
+    target = target_for(model, options.target)
+    edges = _edge_filter(model, options, progress) if target.has_edges else None
+    care = _care_sets(model, options, progress) if options.mode == "domain" else None
+    minimised = minimise(target.lower(Ingredients(model, edges, care)), options.effort, progress)
+    design = Design(
         model,
-        edge_filter,
-        care_set(seen.codes, options.care_minimum),
-        care_set(windows, min(options.care_minimum, int(windows.max()))),
+        edges,
+        minimised.circuit,
+        target,
+        options.mode,
+        options.style,
+        name,
+        (),
     )
+    design = replace(design, header=_header(design, options))
+    imagery, agreement = options.imagery, None
+    if imagery and edges is not None:
+        agreement = edge_agreement(edges, model, imagery, progress)
+    return Plan(design, minimised.covers, minimised.methods, agreement)
 
 
-def _specify_neighbourhood(
-    model: WisardModel, encoder: Neighbourhood, options: CompileOptions, progress: Progress
-) -> NeighbourhoodSpecification:
-    if options.mode == "exact":
-        return NeighbourhoodSpecification(model, np.ones(1 << encoder.width, dtype=np.bool_))
-    seen = survey_codes(encoder, _care_imagery(options), progress)
-    return NeighbourhoodSpecification(model, care_set(seen, options.care_minimum))
+def _care_sets(model: WisardModel, options: CompileOptions, progress: Progress) -> dict[str, CareSet]:
+    """The codes that occur in the care imagery, and the binary windows that the model makes of it."""
+    folder = _care_imagery(options)
+    if isinstance(model.encoder, Neighbourhood):
+        codes = survey_codes(model.encoder, folder, progress)
+        return {"neighbourhood": Codes(care_set(codes, options.care_minimum))}
+    seen = survey(model, folder, progress)
+    windows = seen.windows if seen.windows.any() else np.ones(WINDOW_CODES, dtype=np.int64)
+    return {
+        "pixel": Codes(care_set(seen.codes, options.care_minimum)),
+        "edge": Codes(care_set(windows, min(options.care_minimum, int(windows.max())))),
+    }
+
+
+def _header(design: Design, options: CompileOptions) -> tuple[str, ...]:
+    """Lines for the comment at the top of the Verilog."""
+    top = design.module(design.circuit.name)
+    lines = [f"{top}: made by wnn2hdl from the model {design.model.digest()}."]
+    if design.mode == "exact":
+        lines.append("Mode exact: equal to the model on every input.")
+    else:
+        lines.append("Mode domain: equal to the model on its care set; elsewhere it may answer anything.")
+    if (care := design.care) is not None and design.mode == "domain":
+        cared = care.project(tuple(range(care.width)))
+        lines.append(f"The care set holds {int(cared.sum())} of {len(cared)} codes.")
+    made = f"LUT networks written as {design.style}, effort {options.effort}."
+    if design.edges is not None:
+        made = f"Edge filter {design.edges.name}, {design.edges.size} patterns. {made}"
+    versions = ", ".join(f"{name} {version}" for name, version in generators().items())
+    return (*lines, made, versions)
 
 
 def _care_imagery(options: CompileOptions) -> Path:

@@ -20,10 +20,11 @@ from wnn2hdl.dataset import Dataset
 from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import with_halo
+from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.files import read_json, write_text
 from wnn2hdl.images import Palette, png_bytes, read_rgb
 from wnn2hdl.ir import Neighbourhood, WisardModel, window_codes
-from wnn2hdl.report import UNCLASSIFIED, Entry, ModelFigures, Picture, build_page, check_report, percent
+from wnn2hdl.report import Entry, ModelFigures, Picture, build_page, check_report, percent
 from wnn2hdl.samples import landscape
 
 SAMPLE_SIDE = 256
@@ -31,7 +32,7 @@ SAMPLE_SIDE = 256
 
 SAMPLE_SEED = 1000
 
-_FLAGS = {"care_minimum": "--care-min", "style": "--emit"}
+_FLAGS = {"care_minimum": "--care-min"}
 _NO_FLAG = frozenset({"sobel_threshold"})
 _EDGE_SETS = frozenset({"boundary", "half-plane", "learned"})
 
@@ -178,10 +179,10 @@ def _word(option: str, value: Any) -> str:
 
 
 def _pictures(design: Design, sample: NDArray[np.uint8], palette: Palette) -> tuple[Picture, ...]:
-    if design.target == "match":
+    if not (design.target.classifies or design.target.has_edges):
         return ()
-    given = ", as the edge filter is given it" if design.target in UNCLASSIFIED else ""
-    classifier = circuit_classifier(design)
+    given = "" if design.target.classifies else ", as the edge filter is given it"
+    classifier = circuit_classifier(design) if design.target.classifies else model_classifier(design.model)
     labels = classifier.classify(with_halo(sample, classifier.halo))
     # Outside of its care set a circuit of several outputs may name a class that does not exist.
     labels = np.minimum(labels, np.uint8(len(palette.names) - 1))
@@ -193,7 +194,7 @@ def _pictures(design: Design, sample: NDArray[np.uint8], palette: Palette) -> tu
             palette.paint(labels),
         ),
     ]
-    if "edge" in design.used and min(labels.shape) >= 3:
+    if "edge" in design.networks and min(labels.shape) >= 3:
         edges = design.networks["edge"].evaluate(window_codes(labels != 0))[..., 0]
         # With a white rim, since pixels there have no whole window, so that all pictures lie alike.
         drawn = np.pad(np.where(edges, np.uint8(0), np.uint8(255)), 1, constant_values=255)

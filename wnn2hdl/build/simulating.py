@@ -1,27 +1,24 @@
 """Simulating circuits of a build in another process: ``python -m wnn2hdl.build.simulating BUILD PART …``.
 
-Amaranth's simulator runs in Python, one core a process; two processes use two cores, and Ctrl-C ends them as
-it ends any outside program.
+Amaranth's simulator runs in Python, one core per process; two processes use two cores, and Ctrl-C ends them
+as it ends any outside program.
 """
 
 import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import cast
 
-from wnn2hdl.build.circuits import component, port_arrays
 from wnn2hdl.build.design import Design
+from wnn2hdl.elaborate import component
 from wnn2hdl.errors import CheckError
 from wnn2hdl.tools import run
 from wnn2hdl.verify.simulation import simulate
-from wnn2hdl.verify.specification import PartName
-from wnn2hdl.verify.vectors import stimulus
 
 _TIMEOUT = 3600.0
 
 
-def simulate_apart(folder: Path, parts: Sequence[PartName]) -> tuple[dict[str, int], str | None]:
+def simulate_apart(folder: Path, parts: Sequence[str]) -> tuple[dict[str, int], str | None]:
     """Simulate circuits of a build in another process.
 
     Args:
@@ -39,21 +36,23 @@ def simulate_apart(folder: Path, parts: Sequence[PartName]) -> tuple[dict[str, i
     return vectors, failure
 
 
-def simulate_parts(design: Design, parts: Sequence[PartName]) -> tuple[dict[str, int], str | None]:
+def simulate_parts(design: Design, parts: Sequence[str]) -> tuple[dict[str, int], str | None]:
     """The same in this process."""
     vectors: dict[str, int] = {}
     for part in parts:
-        inputs = stimulus(design.specification, part)
-        expected = design.specification.evaluate(part, inputs)
+        claim = design.specification.claims[part]
+        assert claim.stimulus is not None
+        inputs = claim.stimulus()
         try:
-            result = simulate(component(design, part), port_arrays(inputs), port_arrays(expected))
+            circuit = component(design.parts[part], style=design.style)
+            result = simulate(circuit, inputs, claim.answers(inputs))
         except CheckError as error:
-            return vectors, error.line()
+            return vectors, f"{part}: {error.line()}"
         vectors[part] = result.vectors
     return vectors, None
 
 
 if __name__ == "__main__":
     build, *names = sys.argv[1:]
-    outcome = simulate_parts(Design.load(Path(build)), cast("list[PartName]", names))
+    outcome = simulate_parts(Design.load(Path(build)), names)
     sys.stdout.write(json.dumps(outcome) + "\n")

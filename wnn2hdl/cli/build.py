@@ -6,13 +6,14 @@ from typing import Any, get_args
 import click
 
 from wnn2hdl.build.compile import compile_model, require_luts
-from wnn2hdl.build.design import Mode, Style, Target
+from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, palette_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.errors import CheckError
-from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir import Style, WisardModel
+from wnn2hdl.lower.targets import TARGETS
 
 
 @app.command("compile")
@@ -20,8 +21,12 @@ from wnn2hdl.ir import WisardModel
 @click.option("-o", "output", type=folder, required=True, help="The build folder to write, as in build/NAME.")
 @click.option(
     "--target",
-    type=click.Choice(get_args(Target)),
-    help="Top of the Verilog.  [default: neighbourhood for models that look at neighbours, else block]",
+    type=click.Choice(list(TARGETS)),
+    help="What to compile.  [default: neighbourhood for models that look at neighbours, else block]",
+)
+@click.option(
+    "--name",
+    help="What the names of all Verilog modules begin with.  [default: the name of the build folder]",
 )
 @click.option(
     "--mode",
@@ -57,12 +62,11 @@ from wnn2hdl.ir import WisardModel
     "--edge-luts", type=click.IntRange(1, 3), help="Learn only patterns whose filter fits so many LUTs."
 )
 @click.option(
-    "--emit",
-    "style",
+    "--style",
     type=click.Choice(get_args(Style)),
-    default="luts",
+    default="cells",
     show_default=True,
-    help="Equations, which synthesis may restructure, or explicit LUT cells, which it keeps.",
+    help="Write LUTs as cells, which synthesis keeps, or as equations, which it may restructure.",
 )
 @click.option(
     "--effort",

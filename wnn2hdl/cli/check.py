@@ -108,9 +108,9 @@ def synth_command(build: Path, as_json: bool) -> None:
       wnn2hdl synth build/mine
       wnn2hdl synth build/mine --json | jq .parts.block.luts
     """
-    design, circuits, _ = open_build(build)
+    design, files, _ = open_build(build)
     with progress() as report:
-        syntheses = synthesise_parts(design, circuits, report)
+        syntheses = synthesise_parts(design, files, report)
     parts = {part: asdict(result.resources) for part, result in syntheses.items()}
     first = next(iter(syntheses.values()))
     data = {

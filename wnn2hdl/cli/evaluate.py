@@ -44,8 +44,8 @@ from wnn2hdl.evaluation.measures import (
 )
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
+from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.progress import Progress
-from wnn2hdl.report import UNCLASSIFIED
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
 
 MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
@@ -119,7 +119,7 @@ def _parts(model: Path) -> tuple[dict[str, PictureClassifier], dict[str, str]]:
         return {"model": open_classifier(model)}, {}
     require_build(model)
     report = read_report(model)
-    if report["target"] in UNCLASSIFIED:
+    if not TARGETS[report["target"]].classifies:
         raise InputError(
             "the build holds no classifier, so there is nothing to measure",
             value=f"{model} (target {report['target']})",

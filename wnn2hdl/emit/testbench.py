@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from hdl_templates.vectors import pack, port_widths
 
-Arrays = Mapping[str, NDArray[np.generic]]
+Arrays = Mapping[str, NDArray[np.bool_]]
+"""Values of ports by name: bool ``[vectors, width]``, the least significant bit first."""
 
 
 def vectors(component: Component, inputs: Arrays, expected: Arrays) -> str:
@@ -16,7 +17,7 @@ def vectors(component: Component, inputs: Arrays, expected: Arrays) -> str:
 
     Args:
         component: the circuit under test.
-        inputs: for each input port its values, as `hdl_templates.vectors.port_values` takes them.
+        inputs: for each input port its values.
         expected: for each output port the model's answers.
 
     Returns:

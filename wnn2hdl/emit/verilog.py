@@ -1,94 +1,148 @@
-"""An Amaranth component as one readable Verilog-2001 file."""
+"""Amaranth components as one readable Verilog-2001 file."""
 
-import re
 from collections.abc import Mapping, Sequence
 
-from amaranth.back import verilog as back_end
-from amaranth.hdl import Fragment
+from amaranth.back import rtlil
+from amaranth.hdl import ClockDomain, Fragment
 from amaranth.lib.wiring import Component
 
 from hdl_templates.hierarchy import Emission, Part
-from hdl_templates.vectors import port_widths
-from wnn2hdl.emit.netlist import parse, write
-from wnn2hdl.emit.tidy import UNUSED, tidy
+from wnn2hdl.emit.netlist import Module, read_modules
+from wnn2hdl.emit.statements import UNUSED, Statement, statements
 
 LINT = """\
-// Several modules share this file, and C++ has a word for the port called `reference`.
+// Several modules share this file.
 /* verilator lint_off DECLFILENAME */
-/* verilator lint_off SYMRSVDWORD */
 """
-"""What ``verilator -Wall`` remarks on although it is meant so."""
 
-_DECIMAL = re.compile(r"\b(32)'d(\d+)")
+_LINE_LENGTH = 110
 
 
-def verilog(component: Component, *, name: str, header: Sequence[str]) -> str:
-    """The Verilog of a combinational component and of the parts inside it.
+def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
+    """The Verilog of a component and of the parts inside it.
 
     Args:
-        component: what to write.
-        name: name of its module.
-        header: lines of the comment at the top of the file. The text depends on them and the component only.
+        part: what to write.
+        prefix: what the names of all modules begin with.
+        header: lines of the comment at the top of the file. The text depends on the arguments only.
 
     Returns:
-        Verilog-2001: the parts first, each once, the component last; ports in the order of declaration.
+        Verilog-2001: the parts first, each once, the component last; ports in the order of declaration. A
+        component with registers has the clock ``clk``, without a reset.
 
     Raises:
-        NotImplementedError: the component holds state.
+        NotImplementedError: the component holds a cell for which there is no Verilog, such as a memory.
+        ToolError: Yosys is missing or failed.
     """
-    emission = Emission()
-    Fragment.get(component, emission)
-    modules = [_module(part, module_name, emission.parts) for module_name, part in emission.parts.items()]
-    modules.append(_module(component, name, emission.parts))
+    emission = Emission(prefix)
+    Fragment.get(part, emission)
+    parts = {**emission.parts, emission.module(part): part}
+    modules = read_modules(
+        [_rtlil(inner, name, prefix) for name, inner in parts.items()],
+        {name: list(inner.signature.members) for name, inner in parts.items()},
+    )
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header)
-    return "\n".join([comment + LINT, *modules])
+    return "\n".join([comment + LINT, *(_module(inner, modules[name]) for name, inner in parts.items())])
 
 
-def vendor_cells_model() -> str:
-    """Behavioural LUT1 … LUT6, MUXF7 and MUXF8, for simulators without the vendor's library.
+def _rtlil(component: Component, name: str, prefix: str) -> str:
+    text: str = rtlil.convert(
+        component,
+        name=name,
+        platform=Emission(prefix),
+        emit_src=False,
+        missing_domain=lambda domain: ClockDomain(domain, reset_less=True),
+    )
+    return text
 
-    Synthesisers skip the modules and take their own primitives: Yosys defines ``SYNTHESIS``, and Vivado
-    honours ``translate_off``.
-    """
-    modules = []
-    for inputs in range(1, 7):
-        names = [f"I{i}" for i in range(inputs)]
-        size = 1 << inputs
-        address = names[0] if inputs == 1 else f"{{{', '.join(reversed(names))}}}"
-        modules.append(
-            f"module LUT{inputs} #(parameter [{size - 1}:0] INIT = {size}'h0) (\n"
-            f"    output wire O,\n" + ",\n".join(f"    input  wire {pin}" for pin in names) + "\n);\n"
-            f"    assign O = INIT[{address}];\nendmodule\n"
-        )
-    pins = "    output wire O,\n    input  wire I0,\n    input  wire I1,\n    input  wire S"
-    modules += [
-        f"module {kind} (\n{pins}\n);\n    assign O = S ? I1 : I0;\nendmodule\n"
-        for kind in ("MUXF7", "MUXF8")
+
+def _module(part: Part, module: Module) -> str:
+    comment = "".join(f"// {line}\n" for line in part.summary.splitlines())
+    attribute = '(* keep_hierarchy = "yes" *)\n' if part.keep_hierarchy else ""
+    return comment + attribute + _text(module)
+
+
+def _text(module: Module) -> str:
+    """The module: statements level by level, each wire declared where it is driven, registers first."""
+    found, widths = statements(module)
+    registers = {statement.drives[0]: statement for statement in found if statement.clock}
+    ports = [f"    input  wire {_range(len(bits))}{port}" for port, bits in module.inputs.items()]
+    ports += [
+        f"    output {_register(registers[port], widths)}"
+        if port in registers
+        else f"    output wire {_range(len(bits))}{port}"
+        for port, bits in module.outputs.items()
     ]
-    return "\n".join(
-        [
-            "// Models of the 7-series cells, for simulation only.",
-            "/* verilator lint_off DECLFILENAME */",
-            "// synthesis translate_off",
-            "`ifndef SYNTHESIS",
-            *modules,
-            "`endif",
-            "// synthesis translate_on\n",
+    levels = _levels(found)
+    ordered = sorted(
+        (statement for statement in found if not statement.clock),
+        key=lambda statement: (UNUSED in statement.drives, levels[statement.drives[0]]),
+    )
+    lines = [
+        f"    {_register(register, widths)};"
+        for net, register in registers.items()
+        if net not in module.outputs
+    ]
+    lines += [_line(statement, widths, module) for statement in ordered]
+    lines += [
+        _wrapped(f"    always @({register.clock}) {net} <= ", register.text)
+        for net, register in registers.items()
+    ]
+    return "\n".join([f"module {module.name} (", ",\n".join(ports), ");", *lines, "endmodule"]) + "\n"
+
+
+def _line(statement: Statement, widths: Mapping[str, int], module: Module) -> str:
+    if statement.head:
+        declared = [
+            f"    wire {_range(widths[net])}{net};" for net in statement.drives if net not in module.outputs
         ]
-    )
+        return "\n".join([*declared, _wrapped(f"    {statement.head} (", f"{statement.text})")])
+    (net,) = statement.drives
+    start = "assign " if net in module.outputs else f"wire {_range(widths[net])}"
+    return _wrapped(f"    {start}{net} = ", statement.text)
 
 
-def _module(component: Component, name: str, parts: Mapping[str, Part]) -> str:
-    text = back_end.convert(
-        component, name=name, platform=Emission(), emit_src=False, strip_internal_attrs=True
-    )
-    # Contents of 32 bits are written as decimal numbers, all others in hexadecimal.
-    text = _DECIMAL.sub(lambda match: f"{match[1]}'h{int(match[2]):08x}", text)
-    ports = {module: port_widths(part) for module, part in parts.items()}
-    netlist = parse(text, *port_widths(component), ports)
-    tidy(netlist)
-    first_line = (type(component).__doc__ or "").partition("\n")[0]
-    comment = f"// {first_line}\n" if first_line else ""
-    keep = isinstance(component, Part) and component.keep_hierarchy
-    attribute = '(* keep_hierarchy = "yes" *)\n' if keep else ""
-    return comment + attribute + write(netlist, name, last={UNUSED})
+def _register(statement: Statement, widths: Mapping[str, int]) -> str:
+    (net,) = statement.drives
+    initial = "" if statement.initial is None else f" = {widths[net]}'h{statement.initial:x}"
+    return f"reg {_range(widths[net])}{net}{initial}"
+
+
+def _levels(found: Sequence[Statement]) -> dict[str, int]:
+    """How many statements lie between the inputs or registers and each net."""
+    drivers = {net: statement for statement in found for net in statement.drives}
+    levels: dict[str, int] = {}
+    stack = list(drivers)
+    while stack:
+        net = stack[-1]
+        statement = drivers[net]
+        missing = [x for x in statement.reads if x in drivers and x not in levels]
+        if statement.clock or not missing:
+            below = () if statement.clock else (levels[x] for x in statement.reads if x in drivers)
+            levels |= dict.fromkeys(statement.drives, 1 + max(below, default=0))
+            stack.pop()
+        else:
+            stack += missing
+    return levels
+
+
+def _wrapped(start: str, rest: str) -> str:
+    """A statement with its semicolon, broken before operators and after commas where it is too long."""
+    chunks: list[str] = []
+    for word in rest.split(" "):
+        if chunks and chunks[-1] in ("&", "|", "^", "?", ":"):
+            chunks[-1] += f" {word}"
+        else:
+            chunks.append(word)
+    lines, line = [], start + chunks[0]
+    for chunk in chunks[1:]:
+        if len(line) + 1 + len(chunk) >= _LINE_LENGTH:
+            lines.append(line)
+            line = " " * 8 + chunk
+        else:
+            line += f" {chunk}"
+    return "\n".join([*lines, f"{line};"])
+
+
+def _range(width: int) -> str:
+    return f"[{width - 1}:0] " if width > 1 else ""

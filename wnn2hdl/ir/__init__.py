@@ -14,7 +14,7 @@ from wnn2hdl.ir.encoder import (
     Thermometer,
 )
 from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
-from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux
+from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux, Style
 from wnn2hdl.ir.tables import Cover, Cube, TruthTable
 from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
 
@@ -39,6 +39,7 @@ __all__ = [
     "Mux",
     "Neighbourhood",
     "PictureEncoder",
+    "Style",
     "Tap",
     "Thermometer",
     "TruthTable",

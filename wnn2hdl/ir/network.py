@@ -1,7 +1,7 @@
 """Networks of look-up tables and dedicated multiplexers: what a table becomes once it is mapped to cells."""
 
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +10,10 @@ from wnn2hdl.errors import ModelFileError
 
 LUT_INPUTS = 6
 """Inputs of the 7-series LUT (Xilinx UG474)."""
+
+Style = Literal["cells", "equations"]
+"""How a LUT network is written: as vendor cells, which a synthesiser keeps, or as equations, which it may
+restructure. Amaranth's simulator has no vendor cells; there a LUT is one look-up, whatever the style."""
 
 CONSTANTS = ("0", "1")
 """Signal names that stand for constants; an output may be tied to one."""

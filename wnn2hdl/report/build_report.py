@@ -4,11 +4,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-REPORT_VERSION = 1
+REPORT_VERSION = 2
 """Of the form of `report.json`; it rises when a key changes its meaning or goes away."""
-
-UNCLASSIFIED = frozenset({"edge", "match"})
-"""Targets without a classifier: they read bits, not pixels, so they have neither an accuracy nor codes."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +35,6 @@ class PartFigures:
     bram36: float | None = None
     dsp: int | None = None
     delay_ps: int | None = None
-
-
-@dataclass(frozen=True)
-class Parts:
-    """The parts of a build; one that was not built has no figures. A block is nine pixels and edge filter."""
-
-    pixel: PartFigures = PartFigures()
-    edge: PartFigures = PartFigures()
-    block: PartFigures = PartFigures()
-    match: PartFigures = PartFigures()
-    neighbourhood: PartFigures = PartFigures()
-    sobel: PartFigures = PartFigures()
 
 
 @dataclass(frozen=True)
@@ -172,9 +157,9 @@ class BuildReport:
 
     Attributes:
         name: of the build.
-        target: ``block``, ``pixel``, ``edge``, ``match`` or ``neighbourhood``.
+        target: the name of one of `wnn2hdl.lower.targets.TARGETS`.
         mode: ``exact`` or ``domain``.
-        parts: what each part costs.
+        parts: what each circuit costs by its name, ``sobel``, the baseline, among them.
         count: the command by which the parts were counted.
         device: the device of `utilisation`.
         utilisation: for parts by name, percent of the device's resources by name.
@@ -198,7 +183,7 @@ class BuildReport:
     name: str
     target: str
     mode: str
-    parts: Parts
+    parts: Mapping[str, PartFigures]
     count: str | None = None
     device: str | None = None
     utilisation: Mapping[str, Mapping[str, float]] = field(default_factory=dict)

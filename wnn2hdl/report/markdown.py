@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from wnn2hdl.report.build_report import UNCLASSIFIED
+from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.report.page import MISSING, form
 
 _COLUMNS = {
@@ -70,7 +70,8 @@ def _proof(proof: Mapping[str, Any]) -> str:
 def _answers(report: Mapping[str, Any]) -> str:
     edges = report["edges"]
     answers: list[tuple[str, str]] = []
-    if report["target"] not in UNCLASSIFIED:
+    target = TARGETS.get(report["target"])
+    if target is None or target.classifies:
         answers += [
             ("accuracy of the circuit", form(report["accuracy"], "percent")),
             ("accuracy of the model", form(report["model_accuracy"], "percent")),

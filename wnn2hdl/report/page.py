@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
-from wnn2hdl.report.build_report import UNCLASSIFIED
+from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.report.charts import cube_bars, lut_bars
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.schematic import draw
@@ -21,14 +21,6 @@ if TYPE_CHECKING:
 
 MISSING = "n/a"
 """Stands where nothing was measured."""
-
-TARGETS = {
-    "block": "Nine pixel classifiers and an edge filter",
-    "pixel": "A pixel classifier",
-    "edge": "An edge filter",
-    "match": "A nine-bit match-and-count circuit",
-    "neighbourhood": "A classifier of a pixel that looks at its neighbours",
-}
 
 RESOURCES = {
     "luts": "LUTs",
@@ -108,26 +100,26 @@ def build_page(
 
     Args:
         report: the object of `report.json`.
-        networks: the LUT networks of the build by part, or by another name where a part is made of several;
-            those of parts that were not measured are not drawn.
+        networks: the LUT networks of the build, by the names of `wnn2hdl.ir.circuit.Circuit.tables`.
         pictures: sample pictures.
         legend: class names and their colours in the pictures, as CSS writes colours.
-        window: what a classifier of neighbourhoods looks at; its networks have the names of the taps.
+        window: what a classifier of neighbourhoods looks at.
     """
     templates = environment()
     templates.globals["figure"] = figures_of(report)
+    target = TARGETS.get(report["target"])
     measured = [part for part, figures in report["parts"].items() if figures["luts"] is not None]
     model = report.get("model")
     confusion = report.get("confusion")
     return templates.get_template("build.html").render(
         report=report,
-        what=TARGETS.get(report["target"], f"A circuit of target {report['target']}"),
+        what=target.description if target else f"A circuit of target {report['target']}",
         form=form,
-        classifies=report["target"] not in UNCLASSIFIED,
-        answers=report["target"] != "match",
+        classifies=target is None or target.classifies,
+        answers=target is None or target.classifies or target.has_edges,
         window=_window(window) if window else (),
         places={
-            name: f"row {tap.row}, column {tap.column}"
+            f"neighbourhood_{name}": f"row {tap.row}, column {tap.column}"
             for name, tap in zip(window.names, window.taps, strict=True)
         }
         if window
@@ -141,11 +133,7 @@ def build_page(
         },
         kinds=_KINDS,
         sum=_sum(report["parts"]),
-        circuits=[
-            _circuit(templates, name, network)
-            for name, network in networks.items()
-            if name in measured or name not in report["parts"]
-        ],
+        circuits=[_circuit(templates, name, network) for name, network in networks.items()],
         pictures=pictures,
         legend=legend,
         classes=model["classes"] if model else [f"class {i}" for i in range(len(confusion or ()))],

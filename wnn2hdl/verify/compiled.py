@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import CheckError
+from wnn2hdl.ir.wires import Bits
 from wnn2hdl.tools import Completed, run_icarus, run_verilator
-from wnn2hdl.verify.specification import Part, Samples
+from wnn2hdl.verify.specification import Claim, Samples
 
 CompiledSimulator = Literal["verilator", "icarus"]
 
@@ -27,24 +28,26 @@ _DIGITS[list(b"ABCDEF")] = range(10, 16)
 
 
 def run_compiled(
-    part: Part,
+    claim: Claim,
+    module: str,
     sources: Sequence[Path],
     inputs: Samples,
     simulator: CompiledSimulator,
     *,
     timeout: float = 600.0,
-) -> tuple[Samples, float]:
+) -> tuple[dict[str, Bits], float]:
     """Simulate a combinational circuit.
 
     Args:
-        part: its module and ports.
+        claim: its ports.
+        module: its module.
         sources: its Verilog files.
         inputs: values of each input port.
         simulator: who simulates.
         timeout: seconds for compiling and for running, each.
 
     Returns:
-        int64 ``[samples]`` for each output port, and the seconds of the run itself, without compiling.
+        bool ``[samples, width]`` for each output port, and the seconds of the run itself, without compiling.
 
     Raises:
         CheckError: an output is undefined (x or z) for a sample.
@@ -54,35 +57,37 @@ def run_compiled(
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
         bench = folder / "drive.v"
-        bench.write_text(_testbench(part), encoding="utf-8")
-        columns = [_to_bytes(inputs[port], width) for port, width in part.inputs.items()]
+        bench.write_text(_testbench(claim, module), encoding="utf-8")
+        columns = [_to_bytes(inputs[port]) for port in claim.inputs]
         np.concatenate(columns, axis=1).tofile(folder / "inputs.bin")
         seconds = _RUN[simulator]([bench, *sources], "drive", cwd=folder, timeout=timeout).seconds
         text = np.fromfile(folder / "outputs.hex", dtype=np.uint8)
-    widths = {port: _digits(width) for port, width in part.outputs.items()}
+    widths = {port: _digits(width) for port, width in claim.outputs.items()}
     if len(text) != samples * sum(widths.values()):
-        raise CheckError(f"{simulator} answered for fewer samples than it was given", value=part.module)
+        raise CheckError(f"{simulator} answered for fewer samples than it was given", value=module)
     digits = _DIGITS[text].reshape(samples, -1)
     if (digits == _UNKNOWN).any():
         first = int(np.flatnonzero((digits == _UNKNOWN).any(axis=1))[0])
-        raise CheckError(f"an output of {part.module} is undefined in {simulator}", value=f"sample {first}")
-    outputs: Samples = {}
+        raise CheckError(f"an output of {module} is undefined in {simulator}", value=f"sample {first}")
+    outputs: dict[str, Bits] = {}
     start = 0
-    for port, width in widths.items():
-        weights = 16 ** np.arange(width - 1, -1, -1, dtype=np.int64)
-        outputs[port] = digits[:, start : start + width].astype(np.int64) @ weights
-        start += width
+    for port, width in claim.outputs.items():
+        # Digits come the most significant first.
+        nibbles = digits[:, start : start + widths[port]][:, ::-1]
+        bits = np.unpackbits(nibbles[..., np.newaxis], axis=2, count=4, bitorder="little")
+        outputs[port] = bits.reshape(samples, -1)[:, :width].astype(np.bool_)
+        start += widths[port]
     return outputs, seconds
 
 
-def _testbench(part: Part) -> str:
-    total = sum(8 * _bytes(width) for width in part.inputs.values())
+def _testbench(claim: Claim, module: str) -> str:
+    total = sum(8 * _bytes(width) for width in claim.inputs.values())
     connections, low = [], total
-    for port, width in part.inputs.items():
+    for port, width in claim.inputs.items():
         low -= 8 * _bytes(width)
         connections.append(f".{port}(sample[{low + width - 1}:{low}])")
     answer, wires = [], []
-    for port, width in part.outputs.items():
+    for port, width in claim.outputs.items():
         wires.append(f"  wire [{width - 1}:0] {port};")
         connections.append(f".{port}({port})")
         padding = 4 * _digits(width) - width
@@ -94,7 +99,7 @@ def _testbench(part: Part) -> str:
             f"  reg [{total - 1}:0] sample;",
             *wires,
             "  integer source, sink, count;",
-            f"  {part.module} circuit ({', '.join(connections)});",
+            f"  {module} circuit ({', '.join(connections)});",
             "  initial begin",
             '    source = $fopen("inputs.bin", "rb");',
             '    sink = $fopen("outputs.hex", "wb");',
@@ -112,12 +117,9 @@ def _testbench(part: Part) -> str:
     )
 
 
-def _to_bytes(values: NDArray[np.int64] | NDArray[np.uint8], width: int) -> NDArray[np.uint8]:
+def _to_bytes(bits: Bits) -> NDArray[np.uint8]:
     """Values as big-endian bytes, uint8 ``[samples, bytes]``: the order in which ``$fread`` fills a word."""
-    if values.ndim > 1:
-        # Pixels: the last one is the most significant, and red is the high byte of each.
-        return values.reshape(len(values), -1, 3)[:, ::-1].reshape(len(values), -1).astype(np.uint8)
-    return values.astype(">u8").view(np.uint8).reshape(-1, 8)[:, 8 - _bytes(width) :]
+    return np.packbits(bits, axis=1, bitorder="little")[:, ::-1]
 
 
 def _bytes(width: int) -> int:

@@ -12,7 +12,7 @@ free input (``setundef -anyseq``), which shows in the graph's count of inputs.
 
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,7 +106,7 @@ def find_differences(
 
 
 def evaluate(
-    circuit: Circuit, inputs: dict[str, int], widths: dict[str, int], outputs: Sequence[str]
+    circuit: Circuit, inputs: Mapping[str, int], widths: Mapping[str, int], outputs: Sequence[str]
 ) -> dict[str, int]:
     """What a circuit answers on one input, by Yosys's constant evaluation of its Verilog.
 

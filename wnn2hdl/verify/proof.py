@@ -15,34 +15,22 @@ A neighbourhood's window is not held: the class bits of both sides are masked by
 The mask is one function of the inputs on both sides, so masked outputs are equal for all windows exactly if
 the outputs are equal for the cared-for ones.
 
-The care set is not empty (`Specification` refuses that), so no claim holds vacuously.
+The care set is not empty (`wnn2hdl.verify.specification.flags_of` refuses that), so no claim holds vacuously.
 """
 
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from wnn2hdl.errors import ToolError
+from wnn2hdl.ir import PIXEL_BITS
 from wnn2hdl.verify.equivalence import Circuit, evaluate, find_differences
-from wnn2hdl.verify.reference import care_verilog, reference_name, reference_verilog
-from wnn2hdl.verify.specification import (
-    AnySpecification,
-    NeighbourhoodSpecification,
-    PartName,
-    Samples,
-    Specification,
-    pixels_to_word,
-    word_to_pixels,
-)
+from wnn2hdl.verify.specification import Claim, Specification, show, value_bits, word_values
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
 
 _SECONDS = 600.0
+_HELD = "proof__held"
 
 
 @dataclass(frozen=True)
@@ -51,24 +39,23 @@ class Counterexample:
 
     Attributes:
         part: the circuit.
-        inputs: values of its input ports; pixels as in `Specification.evaluate`, for one sample.
+        inputs: values of its input ports.
         expected: the model's outputs.
         actual: the circuit's outputs.
     """
 
-    part: PartName
-    inputs: Samples
-    expected: dict[str, int]
-    actual: dict[str, int]
+    part: str
+    inputs: Mapping[str, int]
+    expected: Mapping[str, int]
+    actual: Mapping[str, int]
 
     def __str__(self) -> str:
-        given = ", ".join(f"{port} {_show(value)}" for port, value in self.inputs.items())
         answers = ", ".join(
-            f"{port} is {self.actual[port]:#b} (the model says {value:#b})"
+            f"{port} is {self.actual[port]:#x} (the model says {value:#x})"
             for port, value in self.expected.items()
             if self.actual[port] != value
         )
-        return f"for {given}: {answers}"
+        return f"for {show(self.inputs)}: {answers}"
 
 
 @dataclass(frozen=True)
@@ -91,156 +78,105 @@ class Proof:
         return "refuted" if self.counterexample else "proved"
 
 
-def prove(specification: AnySpecification, verilog: Mapping[PartName, Path]) -> dict[PartName, Proof]:
+def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[str, Proof]:
     """Prove emitted circuits equal to the model, on every cared-for input.
 
     Args:
-        specification: the model and its care set.
-        verilog: for each circuit the file that was written; it is read back from there.
+        specification: what the model answers, and where it matters.
+        emitted: the Verilog of each circuit to prove, by its part.
 
     Returns:
         The outcome for each circuit.
 
     Raises:
         CheckError: a circuit has registers or reads undefined values.
-        ToolError: a file cannot be read as a circuit with these ports, or a tool is missing or gave up.
+        ToolError: a text cannot be read as a circuit with these ports, or a tool is missing or gave up.
     """
     started = time.perf_counter()
-    reference = reference_verilog(specification)
-    emitted = {part: path.read_text(encoding="utf-8") for part, path in verilog.items()}
+    claims = {part: specification.claims[part] for part in emitted}
     differences = find_differences(
         [
             (
-                held_in_care(specification, part, text, specification.part(part).module),
-                held_in_care(specification, part, reference, reference_name(part)),
+                held_in_care(specification, claim, emitted[part]),
+                held_in_care(specification, claim, Circuit((specification.reference,), claim.module)),
             )
-            for part, text in emitted.items()
+            for part, claim in claims.items()
         ],
         timeout=_SECONDS,
     )
     counterexamples = {
-        part: None if values is None else _against_model(specification, part, emitted[part], values)
-        for part, values in zip(emitted, differences, strict=True)
+        part: None if values is None else _against_model(claim, emitted[part], values)
+        for (part, claim), values in zip(claims.items(), differences, strict=True)
     }
     seconds = time.perf_counter() - started
     return {part: Proof(METHOD, seconds, found) for part, found in counterexamples.items()}
 
 
 def prove_netlists(
-    specification: AnySpecification, netlists: Mapping[PartName, tuple[Path, Path]]
-) -> dict[PartName, Proof]:
+    specification: Specification, netlists: Mapping[str, tuple[Circuit, Circuit]]
+) -> dict[str, Proof]:
     """Prove mapped netlists equal to the Verilog they were mapped from, on every input.
 
     Args:
-        specification: the model, for the ports.
+        specification: for the ports.
         netlists: for each circuit the emitted Verilog and the netlist of 7-series cells.
 
     Returns, raises: as `prove`; what a counterexample expects is the emitted Verilog's answer.
     """
     started = time.perf_counter()
-    pairs = {
-        part: tuple(
-            Circuit((path.read_text(encoding="utf-8"),), specification.part(part).module) for path in paths
-        )
-        for part, paths in netlists.items()
-    }
-    differences = find_differences([(left, right) for left, right in pairs.values()], timeout=_SECONDS)
-    counterexamples: dict[PartName, Counterexample | None] = {}
-    for (part, (source, netlist)), values in zip(pairs.items(), differences, strict=True):
-        if values is None:
-            counterexamples[part] = None
-        else:
-            counterexamples[part] = Counterexample(
-                part,
-                _samples(specification, part, values),
-                _answers(specification, part, source, values),
-                _answers(specification, part, netlist, values),
+    differences = find_differences(list(netlists.values()), timeout=_SECONDS)
+    counterexamples: dict[str, Counterexample | None] = {}
+    for (part, (source, netlist)), values in zip(netlists.items(), differences, strict=True):
+        claim = specification.claims[part]
+        counterexamples[part] = (
+            None
+            if values is None
+            else Counterexample(
+                part, values, _answers(claim, source, values), _answers(claim, netlist, values)
             )
+        )
     seconds = time.perf_counter() - started
     return {part: Proof(METHOD, seconds, found) for part, found in counterexamples.items()}
 
 
-def held_in_care(specification: AnySpecification, part: PartName, source: str, module: str) -> Circuit:
+def held_in_care(specification: Specification, claim: Claim, circuit: Circuit) -> Circuit:
     """A circuit in the wrapper that holds its inputs inside the care set (see the top of this file)."""
-    ports = specification.part(part)
-    header = [f"input [{width - 1}:0] {port}" for port, width in ports.inputs.items()]
-    header += [f"output [{width - 1}:0] {port}" for port, width in ports.outputs.items()]
-    nets = {port: port for port in (*ports.inputs, *ports.outputs)}
-    lines = [f"module held({', '.join(header)});"]
-    if isinstance(specification, NeighbourhoodSpecification):
-        nets["class_bits"] = "any_class_bits"
-        width = specification.class_width
+    header = [f"input [{width - 1}:0] {port}" for port, width in claim.inputs.items()]
+    header += [f"output [{width - 1}:0] {port}" for port, width in claim.outputs.items()]
+    nets = {port: port for port in (*claim.inputs, *claim.outputs)}
+    lines = [f"module {_HELD}({', '.join(header)});"]
+    for port in claim.held:
+        nets[port] = f"held_{port}"
+        lines.append(f"  wire [{claim.inputs[port] - 1}:0] held_{port};")
+        for low in range(0, claim.inputs[port], PIXEL_BITS):
+            bits = f"[{low + PIXEL_BITS - 1}:{low}]"
+            lines.append(
+                f"  proof__care_pixel care_{port}_{low} (.free({port}{bits}), .rgb(held_{port}{bits}));"
+            )
+    for port, mask in claim.masks.items():
+        width = claim.outputs[port]
+        nets[port] = f"any_{port}"
         lines += [
-            f"  wire [{width - 1}:0] any_class_bits;",
-            "  wire cared;",
-            "  care_neighbourhood care (.window(window), .cared(cared));",
-            f"  assign class_bits = any_class_bits & {{{width}{{cared}}}};",
+            f"  wire [{width - 1}:0] any_{port};",
+            f"  wire cared_{port};",
+            f"  {mask.module} care_{port} (.{mask.port}({mask.port}), .cared(cared_{port}));",
+            f"  assign {port} = any_{port} & {{{width}{{cared_{port}}}}};",
         ]
-        return _wrapped(specification, lines, module, nets, source)
-    for port, width in ports.inputs.items():
-        if port in ("rgb", "window"):
-            nets[port] = "held_pixels"
-            lines.append(f"  wire [{width - 1}:0] held_pixels;")
-            for low in range(0, width, 24):
-                bits = f"[{low + 23}:{low}]"
-                lines.append(f"  care_pixel care_{low} (.free({port}{bits}), .rgb(held_pixels{bits}));")
-    if "edge_bit" in ports.outputs:
-        nets["edge_bit"] = "any_edge_bit"
-        lines += [
-            "  wire any_edge_bit, cared;",
-            "  care_window care_window (.bits(bits), .cared(cared));",
-            "  assign edge_bit = any_edge_bit & cared;",
-        ]
-    return _wrapped(specification, lines, module, nets, source)
-
-
-def _wrapped(
-    specification: AnySpecification, lines: list[str], module: str, nets: dict[str, str], source: str
-) -> Circuit:
     connections = ", ".join(f".{port}({net})" for port, net in nets.items())
-    wrapper = "\n".join([*lines, f"  {module} circuit ({connections});", "endmodule", ""])
-    return Circuit((wrapper, care_verilog(specification), source), "held")
+    wrapper = "\n".join([*lines, f"  {circuit.top} circuit ({connections});", "endmodule", ""])
+    return Circuit((wrapper, specification.care, *circuit.sources), _HELD)
 
 
-def _against_model(
-    specification: AnySpecification, part: PartName, source: str, values: dict[str, int]
-) -> Counterexample:
+def _against_model(claim: Claim, circuit: Circuit, values: Mapping[str, int]) -> Counterexample:
     """The counterexample of the wrapper, as the circuit inside it sees it."""
-    held = dict(values)
-    if isinstance(specification, Specification):
-        for port in {"rgb", "window"} & held.keys():
-            pixels = word_to_pixels(held[port], specification.part(part).inputs[port] // 24)
-            held[port] = pixels_to_word(specification.nearest_cared(pixels))
-    samples = _samples(specification, part, held)
-    expected = {port: int(column[0]) for port, column in specification.evaluate(part, samples).items()}
-    actual = _answers(specification, part, Circuit((source,), specification.part(part).module), held)
+    samples = claim.hold({port: value_bits(values[port], width) for port, width in claim.inputs.items()})
+    held = {port: word_values(bits)[0] for port, bits in samples.items()}
+    expected = {port: word_values(bits)[0] for port, bits in claim.answers(samples).items()}
+    actual = _answers(claim, circuit, held)
     if actual == expected:
         raise ToolError("ABC's counterexample is none: circuit and model agree on it", value=held)
-    return Counterexample(part, samples, expected, actual)
+    return Counterexample(claim.part, held, expected, actual)
 
 
-def _answers(
-    specification: AnySpecification, part: PartName, circuit: Circuit, values: dict[str, int]
-) -> dict[str, int]:
-    ports = specification.part(part)
-    return evaluate(circuit, values, ports.inputs, tuple(ports.outputs))
-
-
-def _samples(specification: AnySpecification, part: PartName, values: dict[str, int]) -> Samples:
-    """Port values as arrays of one sample."""
-    samples: Samples = {}
-    for port, width in specification.part(part).inputs.items():
-        if port == "rgb":
-            samples[port] = word_to_pixels(values[port], 1)
-        elif port == "window":
-            samples[port] = word_to_pixels(values[port], width // 24)[np.newaxis]
-        else:
-            samples[port] = np.array([values[port]])
-    return samples
-
-
-def _show(value: NDArray[Any]) -> str:
-    if value.ndim == 1:
-        return f"{int(value[0]):#b}"
-    pixels = value.reshape(-1, 3).tolist()
-    return " ".join(f"({red},{green},{blue})" for red, green, blue in pixels)
+def _answers(claim: Claim, circuit: Circuit, values: Mapping[str, int]) -> dict[str, int]:
+    return evaluate(circuit, values, claim.inputs, tuple(claim.outputs))

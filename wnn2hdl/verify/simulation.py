@@ -1,21 +1,19 @@
 """Simulation of a component in Amaranth's simulator, compared with the model's answers vector by vector."""
 
 import time
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from amaranth.hdl import Cat
 from amaranth.lib.wiring import Component
 from amaranth.sim import Simulator
-from numpy.typing import NDArray
 
 from hdl_templates.vectors import pack, port_widths
 from wnn2hdl.errors import CheckError, InputError
+from wnn2hdl.verify.specification import Samples
 
-Arrays = Mapping[str, NDArray[np.generic]]
 Progress = Callable[[int, int], None]
 """Called with the vectors done and their total."""
 
@@ -42,8 +40,8 @@ class SimulationResult:
 
 def simulate(
     component: Component,
-    inputs: Arrays,
-    expected: Arrays,
+    inputs: Samples,
+    expected: Samples,
     *,
     progress: Progress | None = None,
     vcd: Path | None = None,
@@ -55,8 +53,7 @@ def simulate(
 
     Args:
         component: the circuit, as yet unused.
-        inputs: for each input port its values, as `hdl_templates.vectors.port_values` takes them: integers
-            ``[vectors]``, or ``[vectors, words]``, least significant word first.
+        inputs: for each input port its values, bool ``[vectors, width]``.
         expected: for each output port the model's answers.
         progress: called now and then.
         vcd: where to record the waves of the first ``vcd_vectors`` vectors, 10 ns each; the recording ends at

@@ -1,0 +1,102 @@
+"""From a design to the files of its Verilog."""
+
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+from hdl_templates import sobel
+from wnn2hdl import elaborate
+from wnn2hdl.build.design import Design
+from wnn2hdl.emit import CELLS_FILE, cells_model, testbench, vectors, verilog
+from wnn2hdl.files import write_text
+from wnn2hdl.tools import find_yosys
+
+SOBEL = "sobel"
+"""Name of the baseline, as that of a part."""
+
+PACKAGES = ("wnn2hdl", "amaranth", "numpy", "pyeda")
+"""The packages whose versions decide the bytes of the Verilog; Yosys, which brings ABC, does so too."""
+
+
+@dataclass(frozen=True, eq=False)
+class Files:
+    """Where the emitted files of a design lie.
+
+    Attributes:
+        verilog: the circuit.
+        cells: models of the vendor's cells for simulators.
+        sobel: the baseline.
+        testbench: checks the circuit against the model's answers.
+        vectors: the inputs and answers that the testbench reads.
+    """
+
+    verilog: Path
+    cells: Path
+    sobel: Path
+    testbench: Path
+    vectors: Path
+
+    @classmethod
+    def of(cls, design: Design, folder: Path) -> "Files":
+        """The files of a design in a folder, written or yet to be."""
+        top = design.module(design.circuit.name)
+        return cls(
+            folder / f"{design.name}.v",
+            folder / CELLS_FILE,
+            folder / f"{SOBEL}.v",
+            folder / f"{top}_tb.v",
+            folder / f"{top}_vectors.hex",
+        )
+
+    @property
+    def simulated(self) -> list[Path]:
+        """What a simulator needs besides a testbench."""
+        return [self.cells, self.verilog]
+
+
+def generators() -> dict[str, str]:
+    """The versions of all that decides the bytes of the Verilog."""
+    yosys = find_yosys()
+    return {**{name: version(name) for name in PACKAGES}, yosys.name: yosys.version}
+
+
+def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
+    """The emitted files of a design: text by name of the file. The same design gives the same bytes.
+
+    Args:
+        design: the design.
+        sobel_threshold: the baseline's.
+
+    Raises:
+        ToolError: Yosys is missing or failed.
+    """
+    files = Files.of(design, Path())
+    part = elaborate.component(design.circuit, style=design.style)
+    prefix = f"{design.name}_"
+    baseline = sobel.Parameters(sobel_threshold).create()
+    title = f"Baseline: 3x3 Sobel operator, |gx| + |gy| >= {sobel_threshold}."
+    claim = design.specification.claims[design.circuit.name]
+    assert claim.stimulus is not None
+    inputs = claim.stimulus()
+    expected = claim.answers(inputs)
+    return {
+        files.verilog.name: verilog(part, prefix=prefix, header=design.header),
+        files.cells.name: cells_model(),
+        files.sobel.name: verilog(baseline, prefix=prefix, header=[title]),
+        files.vectors.name: vectors(part, inputs, expected),
+        files.testbench.name: testbench(
+            part,
+            name=design.module(design.circuit.name),
+            count=len(next(iter(expected.values()))),
+            vectors_file=files.vectors.name,
+            sources=[path.name for path in files.simulated],
+        ),
+    }
+
+
+def emit(design: Design, folder: Path, *, sobel_threshold: int) -> Files:
+    """Write a design and its emitted files into an existing folder; raises as `render`."""
+    design.save(folder)
+    for name, text in render(design, sobel_threshold=sobel_threshold).items():
+        write_text(folder / name, text)
+    return Files.of(design, folder)

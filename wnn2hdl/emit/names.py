@@ -1,0 +1,103 @@
+"""Which name each bit of a module goes by in the emitted text."""
+
+from collections import Counter
+from collections.abc import Iterable
+
+from wnn2hdl.emit.expression import Piece, pieces
+from wnn2hdl.emit.netlist import Bit, BitVector, Cell, Module
+
+
+class Names:
+    """The names of a module's bits, and the widths of what is named.
+
+    A word that a cell drives takes the name of a net of the same bits: of an output port, else of a net that
+    the component named, else one of its own. Bits of input ports to which the component gave a name, as in
+    ``R7``, go by that name.
+
+    Attributes:
+        widths: bits of each named net, ports among them.
+        aliases: for each name of a bit of an input port, that bit's own reference.
+    """
+
+    def __init__(self, module: Module) -> None:
+        self._module = module
+        self._references: dict[Bit, Piece] = {}
+        self._outputs: dict[BitVector, str] = {}
+        self.widths = {port: len(bits) for port, bits in (*module.inputs.items(), *module.outputs.items())}
+        self.aliases: dict[str, Piece] = {}
+        self._by_bits: dict[BitVector, list[str]] = {}
+        for name, net in module.nets.items():
+            self._by_bits.setdefault(net.bits, []).append(name)
+        for port, bits in module.inputs.items():
+            self._references |= {bit: (port, position, 1) for position, bit in enumerate(bits)}
+        self._name_input_bits()
+        for cell in module.cells:
+            for pin, bits in cell.outputs.items():
+                self._name_driven(cell, pin, bits)
+
+    def word(self, bits: BitVector) -> list[Piece]:
+        """A word that is read, as pieces of named nets; the word of a joined output is that port."""
+        if len(bits) > 1 and bits in self._outputs:
+            return [(self._outputs[bits], 0, len(bits))]
+        return pieces([self._references[bit] if isinstance(bit, int) else _constant(bit) for bit in bits])
+
+    def driven(self, bits: BitVector) -> list[Piece]:
+        """A word that a cell drives, as pieces of named nets."""
+        return pieces([self._references[bit] for bit in bits])
+
+    def joined_output(self, port: str) -> None:
+        """From now on a word of the bits of this output port goes by the name of the port."""
+        self._outputs[self._module.outputs[port]] = port
+
+    def _name_input_bits(self) -> None:
+        """Use the names that the component gave to single bits of wider ports, the highest bit first."""
+        named: list[tuple[Piece, str, Bit]] = []
+        for name, net in self._module.nets.items():
+            if len(net.bits) == 1 and not net.hidden and name not in self.widths:
+                piece = self._references.get(net.bits[0])
+                if piece is not None and self.widths[piece[0]] > 1:
+                    named.append((piece, name, net.bits[0]))
+        for piece, name, bit in sorted(named, key=lambda item: (item[0][0], -item[0][1], item[1])):
+            plain = self._new(name, 1)
+            self.aliases[plain] = piece
+            self._references[bit] = (plain, 0, 1)
+
+    def _name_driven(self, cell: Cell, pin: str, bits: BitVector) -> None:
+        candidates = self._by_bits.get(bits, [])
+        port = next((name for name in candidates if name in self._module.outputs), None)
+        public = next((name for name in candidates if not self._module.nets[name].hidden), None)
+        if port is not None:
+            name = port
+        elif cell.kind[0] != "$" and not _is_vendor_cell(cell):
+            name = self._new(f"{cell.name}_{pin}", len(bits))
+        else:
+            name = self._new(public or f"term_{cell.name.strip('$')}", len(bits))
+        self._references |= {bit: (name, position, 1) for position, bit in enumerate(bits)}
+
+    def _new(self, wanted: str, width: int) -> str:
+        base = plain = wanted.replace("$", "_").replace("\\", "").replace(".", "_")
+        number = 0
+        while plain in self.widths:
+            number += 1
+            plain = f"{base}_{number}"
+        self.widths[plain] = width
+        return plain
+
+
+def count_reads(module: Module) -> Counter[Bit]:
+    """How often each bit is read by cells and output ports."""
+    words: Iterable[BitVector] = (
+        *(bits for cell in module.cells for bits in cell.inputs.values()),
+        *module.outputs.values(),
+    )
+    return Counter(bit for bits in words for bit in bits)
+
+
+def _is_vendor_cell(cell: Cell) -> bool:
+    return set(cell.outputs) <= {"O", "O5", "O6"}
+
+
+def _constant(bit: str) -> Piece:
+    if bit not in ("0", "1"):
+        raise NotImplementedError("an undefined bit (x) cannot be emitted")
+    return ("", int(bit), 1)

@@ -1,0 +1,213 @@
+"""From the cells of a module to Verilog statements; operators that are read once are inlined."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from wnn2hdl.emit.expression import Operation, constant, render, render_word
+from wnn2hdl.emit.names import Names, count_reads
+from wnn2hdl.emit.netlist import Bit, BitVector, Cell, Module
+
+UNUSED = "unused"
+"""The wire that gathers what nothing reads; it stays although nothing reads it either."""
+
+_BITWISE = {"$and": "&", "$or": "|", "$xor": "^"}
+_ARITHMETIC = {"$add": "+", "$sub": "-", "$mul": "*"}
+_COMPARISONS = {"$ge": ">=", "$gt": ">", "$le": "<=", "$lt": "<", "$eq": "==", "$ne": "!="}
+_REDUCTIONS = {"$reduce_or": "|", "$reduce_bool": "|", "$reduce_and": "&", "$reduce_xor": "^"}
+_FLIP_FLOP = "$dff"
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement of a module.
+
+    Attributes:
+        drives: the nets that it drives.
+        reads: the nets that it reads.
+        text: an expression, for ``assign``; the pins of an instance; what a flip-flop stores.
+        head: of an instance, what stands before its pins; empty of all others.
+        clock: of a flip-flop, as an expression of the edge; None of all others.
+        initial: of a flip-flop, the value before the first edge.
+    """
+
+    drives: tuple[str, ...]
+    reads: frozenset[str]
+    text: str
+    head: str = ""
+    clock: str | None = None
+    initial: int | None = None
+
+
+def statements(module: Module) -> tuple[list[Statement], dict[str, int]]:
+    """The statements of a module in no particular order, and the width of every net by name.
+
+    Raises:
+        NotImplementedError: a cell that no statement is known for.
+    """
+    return _Translation(module).run()
+
+
+class _Translation:
+    """One module on its way to statements."""
+
+    def __init__(self, module: Module) -> None:
+        self.module = module
+        self.names = Names(module)
+        self.reads = count_reads(module)
+        self.drivers: dict[Bit, Cell] = {
+            bit: cell for cell in module.cells for bits in cell.outputs.values() for bit in bits
+        }
+        self.readers: dict[Bit, list[Cell]] = {}
+        for cell in module.cells:
+            for bit in dict.fromkeys(bit for bits in cell.inputs.values() for bit in bits):
+                self.readers.setdefault(bit, []).append(cell)
+        self.hidden = self._hidden_words()
+        self.read_nets: set[str] = set()
+
+    def run(self) -> tuple[list[Statement], dict[str, int]]:
+        """See `statements`."""
+        found = [self._output(port, bits) for port, bits in self.module.outputs.items() if self._joined(bits)]
+        for port, bits in self.module.outputs.items():
+            if self._joined(bits) and len(bits) > 1:
+                self.names.joined_output(port)
+        found += [self._statement(cell) for cell in self.module.cells if not self._inlined(cell)]
+        found += [
+            Statement((name,), frozenset({piece[0]}), render_word([piece], self.names.widths))
+            for name, piece in self.names.aliases.items()
+        ]
+        return _without_unread(found, set(self.module.outputs)), self.names.widths
+
+    def _hidden_words(self) -> set[BitVector]:
+        """Words that only tools have a name for."""
+        public = {net.bits for net in self.module.nets.values() if not net.hidden}
+        return {net.bits for net in self.module.nets.values() if net.hidden} - public
+
+    def _joined(self, bits: BitVector) -> bool:
+        """Whether an output port needs a statement: no cell drives just its bits."""
+        driver = self.drivers.get(bits[0])
+        return driver is None or bits not in driver.outputs.values()
+
+    def _inlined(self, cell: Cell) -> bool:
+        """Whether a cell's expression stands where its output is read.
+
+        Only operations of one bit are, and only inside such: there a Verilog expression means the same in any
+        context.
+        """
+        bits = next(iter(cell.outputs.values()), ())
+        if len(bits) != 1 or bits not in self.hidden or _operator(cell) is None:
+            return False
+        readers = self.readers.get(bits[0], [])
+        if not all(_operator(reader) and len(reader.outputs["Y"]) == 1 for reader in readers):
+            return False
+        return self.reads[bits[0]] == len(readers) and (self.reads[bits[0]] == 1 or cell.kind == "$not")
+
+    def _word(self, bits: BitVector) -> str:
+        word = self.names.word(bits)
+        self.read_nets |= {net for net, _, _ in word if net}
+        return render_word(word, self.names.widths)
+
+    def _output(self, port: str, bits: BitVector) -> Statement:
+        self.read_nets = set()
+        text = self._word(bits)
+        return Statement((port,), frozenset(self.read_nets), text)
+
+    def _statement(self, cell: Cell) -> Statement:
+        self.read_nets = set()
+        if cell.kind[0] != "$":
+            return self._instance(cell)
+        (output,) = cell.outputs.values()
+        ((net, _, _),) = self.names.driven(output)
+        if cell.kind == _FLIP_FLOP:
+            return self._flip_flop(cell, net, output)
+        text = self._expression(cell)
+        return Statement((net,), frozenset(self.read_nets), text)
+
+    def _expression(self, cell: Cell) -> str:
+        (output,) = cell.outputs.values()
+        if _operator(cell) is not None and len(output) == 1:
+            return render(self._tree(cell))
+        if cell.kind in _REDUCTIONS:
+            return f"{_REDUCTIONS[cell.kind]}{self._word(cell.inputs['A'])}"
+        if cell.kind == "$logic_not":
+            return f"~|{self._word(cell.inputs['A'])}"
+        if cell.kind == "$not":
+            return f"~{self._extended(cell, 'A', len(output))}"
+        if cell.kind == "$neg":
+            return f"-{self._extended(cell, 'A', len(output))}"
+        if cell.kind == "$mux":
+            select, high, low = (self._word(cell.inputs[pin]) for pin in "SBA")
+            return f"{select} ? {high} : {low}"
+        if cell.kind in _BITWISE | _ARITHMETIC:
+            left, right = (self._extended(cell, pin, len(output)) for pin in "AB")
+            return f"{left} {(_BITWISE | _ARITHMETIC)[cell.kind]} {right}"
+        if cell.kind in _COMPARISONS:
+            width = max(len(cell.inputs["A"]), len(cell.inputs["B"]))
+            left, right = (self._extended(cell, pin, width) for pin in "AB")
+            if cell.number("A_SIGNED") and cell.number("B_SIGNED"):
+                left, right = f"$signed({left})", f"$signed({right})"
+            return f"{left} {_COMPARISONS[cell.kind]} {right}"
+        raise NotImplementedError(f"{self.module.name} has a {cell.kind}, for which there is no Verilog")
+
+    def _tree(self, cell: Cell) -> Operation:
+        """A one-bit operation with the operations of its operands inside."""
+        operator = _operator(cell)
+        assert operator is not None
+        pins = {"~": "A", "?": "SBA"}.get(operator, "AB")
+        operands: list[Operation | str] = []
+        for pin in pins:
+            bits = cell.inputs[pin]
+            inner = self.drivers.get(bits[0])
+            if inner is not None and self._inlined(inner):
+                operands.append(self._tree(inner))
+            else:
+                operands.append(self._word(bits))
+        return Operation(operator, tuple(operands)).flat()
+
+    def _extended(self, cell: Cell, pin: str, width: int) -> str:
+        """An operand at the width of its operator, extended by zeros or by its sign."""
+        bits = cell.inputs[pin][:width]
+        sign: Bit = bits[-1] if cell.number(f"{pin}_SIGNED") else "0"
+        return self._word((*bits, *[sign] * (width - len(bits))))
+
+    def _flip_flop(self, cell: Cell, net: str, output: BitVector) -> Statement:
+        edge = "posedge" if cell.number("CLK_POLARITY") else "negedge"
+        clock, data = f"{edge} {self._word(cell.inputs['CLK'])}", self._word(cell.inputs["D"])
+        initial = next(
+            (x.initial for x in self.module.nets.values() if x.bits == output and x.initial is not None), None
+        )
+        return Statement((net,), frozenset(self.read_nets), data, clock=clock, initial=initial)
+
+    def _instance(self, cell: Cell) -> Statement:
+        marks = "".join(f'(* {name} = "{text}" *) ' for name, text in cell.attributes.items())
+        parameters = ", ".join(
+            f".{name}({constant(int(digits, 2), len(digits))})" for name, digits in cell.parameters.items()
+        )
+        driven: list[str] = []
+        pins = [f".{pin}({self._word(bits)})" for pin, bits in cell.inputs.items()]
+        for pin, bits in cell.outputs.items():
+            word = self.names.driven(bits)
+            driven += [net for net, _, _ in word]
+            pins.append(f".{pin}({render_word(word, self.names.widths)})")
+        head = f"{marks}{cell.kind}{f' #({parameters})' if parameters else ''} {cell.name}"
+        return Statement(tuple(driven), frozenset(self.read_nets), ", ".join(pins), head=head)
+
+
+def _operator(cell: Cell) -> str | None:
+    """The operator of a bitwise operation on single bits; None of all other cells."""
+    operators: Mapping[str, str] = {**_BITWISE, "$not": "~", "$mux": "?"}
+    single = all(len(bits) == 1 for bits in cell.inputs.values())
+    return operators.get(cell.kind) if single else None
+
+
+def _without_unread(found: list[Statement], kept: set[str]) -> list[Statement]:
+    """The statements whose outputs are read, or are ports, or gather what is unused."""
+    drivers = {net: statement for statement in found for net in statement.drives}
+    needed: set[int] = set()
+    stack = [drivers[net] for net in (*kept, UNUSED) if net in drivers]
+    stack += [statement for statement in found if statement.head]
+    while stack:
+        statement = stack.pop()
+        if id(statement) not in needed:
+            needed.add(id(statement))
+            stack += [drivers[net] for net in statement.reads if net in drivers]
+    return [statement for statement in found if id(statement) in needed]

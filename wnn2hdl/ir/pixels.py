@@ -1,0 +1,59 @@
+"""The pixel word of the hardware, and pictures as the bits of ports.
+
+A pixel is 24 bits: red in 23…16, green in 15…8, blue in 7…0. A window is its pixels row by row, the first in
+the lowest bits: pixel ``i`` is ``window[24*i +: 24]``.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wnn2hdl.ir.encoder import CHANNELS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect
+from wnn2hdl.ir.wires import Bits
+
+
+def pixel_bits(pixels: ArrayLike) -> Bits:
+    """Pixels as the bits of a port.
+
+    Args:
+        pixels: uint8 ``[samples, 3]`` or ``[samples, pixels, 3]``, channels in the order of `CHANNELS`.
+
+    Returns:
+        bool ``[samples, 24 * pixels]``.
+    """
+    array = np.asarray(pixels, dtype=np.uint8)
+    array = array.reshape(len(array), -1, len(CHANNELS))[:, :, ::-1]
+    return np.unpackbits(array.reshape(len(array), -1), axis=1, bitorder="little").astype(np.bool_)
+
+
+def bits_to_pixels(bits: Bits) -> NDArray[np.uint8]:
+    """The inverse of `pixel_bits`: uint8 ``[samples, pixels, 3]``."""
+    packed = np.packbits(bits, axis=1, bitorder="little")
+    return packed.reshape(len(bits), -1, len(CHANNELS))[:, :, ::-1]
+
+
+def pixels_of_codes(
+    encoder: BitSelect, codes: NDArray[np.int64], rng: np.random.Generator | None = None
+) -> NDArray[np.uint8]:
+    """Pixels of these codes, uint8 ``S + (3,)`` for codes of shape ``S``.
+
+    Args:
+        encoder: the bits that a code is made of.
+        codes: the codes.
+        rng: draws the bits that the encoder does not read; they are 0 if left out.
+    """
+    shape = (*codes.shape, len(CHANNELS))
+    pixels = np.zeros(shape, np.uint8) if rng is None else rng.integers(0, 256, size=shape, dtype=np.uint8)
+    for position, name in enumerate(encoder.bits):
+        channel, bit = CHANNELS.index(name[0]), int(name[1])
+        pixels[..., channel] &= np.uint8(0xFF ^ 1 << bit)
+        pixels[..., channel] |= ((codes >> position & 1) << bit).astype(np.uint8)
+    return pixels
+
+
+def bit_name(position: int) -> str:
+    """Name of a bit of the pixel word: ``R7`` for 23."""
+    return _NAMES[position]
+
+
+_NAMES = {position: name for name, position in PIXEL_BIT_NAMES.items()}
+assert len(_NAMES) == PIXEL_BITS

@@ -1,0 +1,156 @@
+"""The circuits of the reference design: pixel, edge filter, matcher, block; and the neighbourhood."""
+
+import numpy as np
+
+from wnn2hdl.ir import (
+    PIXEL_BITS,
+    WINDOW_BITS,
+    EdgeFilter,
+    Neighbourhood,
+    TruthTable,
+    WisardModel,
+    pixel_encoder,
+)
+from wnn2hdl.ir.care import CareSet
+from wnn2hdl.ir.circuit import Care, Circuit, Instance
+from wnn2hdl.ir.nodes import Match, Table
+from wnn2hdl.ir.wires import Port, Slice, Word
+from wnn2hdl.lower.table import pixel_table
+
+DECISION = "decision"
+"""The table that gives the class for the code of a pixel or of a neighbourhood."""
+
+
+def pixel(model: WisardModel, care: CareSet) -> Circuit:
+    """The pixel classifier: ``rgb[23:0]`` to ``class_bits``, the index of the class in binary.
+
+    Args:
+        model: a model of single pixels.
+        care: the codes of its encoder that matter.
+
+    Raises:
+        InputError: the model reads no pixels, or more bits than a table may have.
+    """
+    encoder = pixel_encoder(model)
+    code = tuple(Slice("rgb", position) for position in encoder.pixel_positions)
+    table = Table(DECISION, code, _cared(pixel_table(model), care))
+    return Circuit(
+        "pixel",
+        f"Pixel classifier of {len(model.classes)} classes.",
+        (Port("rgb", PIXEL_BITS),),
+        (table,),
+        {"class_bits": _all(table)},
+        (Care(code, care),),
+    )
+
+
+def edge(edge_filter: EdgeFilter, care: CareSet) -> Circuit:
+    """The 3x3 edge filter: ``bits[8:0]`` to ``edge_bit``.
+
+    Args:
+        edge_filter: the patterns that count as an edge.
+        care: the binary windows that matter.
+    """
+    bits = Port("bits", WINDOW_BITS)
+    table = Table("filter", bits.word, _cared(edge_filter.table(), care))
+    return Circuit(
+        "edge",
+        "3x3 edge filter on a binary window.",
+        (bits,),
+        (table,),
+        {"edge_bit": _all(table)},
+        (Care(bits.word, care),),
+    )
+
+
+def match() -> Circuit:
+    """The matcher: in how many of nine places ``bits`` and ``reference_bits`` agree, ``match_count[3:0]``."""
+    bits, reference = Port("bits", WINDOW_BITS), Port("reference_bits", WINDOW_BITS)
+    count = Match("agreement", bits.word, reference.word)
+    summary = "Match and count: in how many places two binary windows agree."
+    return Circuit("match", summary, (bits, reference), (count,), {"match_count": _all(count)})
+
+
+def block(pixel_circuit: Circuit, edge_circuit: Circuit) -> Circuit:
+    """The block of the reference design: nine pixel classifiers and the edge filter on their bits.
+
+    ``window[215:0]`` to ``bits[8:0]``, where bit ``i`` is set if pixel ``i`` (``3 * row + column``) is not of
+    class 0, the background, and ``edge_bit``.
+    """
+    window = Port("window", WINDOW_BITS * PIXEL_BITS)
+    nodes: list[Instance | Table] = []
+    bits: list[Slice] = []
+    for i in range(WINDOW_BITS):
+        pixel_i = Instance(
+            f"pixel_{i}", pixel_circuit, {"rgb": (Slice("window", i * PIXEL_BITS, PIXEL_BITS),)}
+        )
+        nodes.append(pixel_i)
+        (class_bits,) = _all(pixel_i)
+        if class_bits.width > 1:
+            foreground = Table(f"foreground_{i}", (class_bits,), _any(class_bits.width))
+            nodes.append(foreground)
+            (class_bits,) = _all(foreground)
+        bits.append(class_bits)
+    edges = Instance("edges", edge_circuit, {"bits": tuple(bits)})
+    return Circuit(
+        "block",
+        "Nine pixel classifiers and the edge filter on their bits.",
+        (window,),
+        (*nodes, edges),
+        {"bits": tuple(bits), "edge_bit": _all(edges)},
+    )
+
+
+def block_match(block_circuit: Circuit, match_circuit: Circuit) -> Circuit:
+    """The block, and the matcher on its nine bits: all that the reference design computes from one window."""
+    window, reference = Port("window", WINDOW_BITS * PIXEL_BITS), Port("reference_bits", WINDOW_BITS)
+    classifiers = Instance("classifiers", block_circuit, {"window": window.word})
+    bits, edge_bit = _all(classifiers)
+    matcher = Instance("matcher", match_circuit, {"bits": (bits,), "reference_bits": reference.word})
+    return Circuit(
+        "block_match",
+        "A block, and the matcher on its nine bits.",
+        (window, reference),
+        (classifiers, matcher),
+        {"bits": (bits,), "edge_bit": (edge_bit,), "match_count": _all(matcher)},
+    )
+
+
+def neighbourhood(model: WisardModel, encoder: Neighbourhood, care: CareSet) -> Circuit:
+    """The classifier of a pixel and its neighbours: ``window`` to ``class_bits``.
+
+    Args:
+        model: a model of neighbourhoods.
+        encoder: its encoder.
+        care: the codes of the encoder that matter.
+    """
+    window = Port("window", encoder.size**2 * PIXEL_BITS)
+    taps = []
+    for name, tap in zip(encoder.names, encoder.taps, strict=True):
+        low = PIXEL_BITS * (encoder.size * tap.row + tap.column)
+        word = tuple(Slice("window", low + position) for position in tap.pixel.pixel_positions)
+        taps.append(Table(name, word, TruthTable.exact(tap.pixel.names, (name,), tap.table[:, np.newaxis])))
+    code = tuple(Slice(tap.name) for tap in taps)
+    decision = Table(DECISION, code, _cared(pixel_table(model), care))
+    return Circuit(
+        "neighbourhood",
+        f"Classifier of a pixel by the {encoder.size}x{encoder.size} pixels around it.",
+        (window,),
+        (*taps, decision),
+        {"class_bits": _all(decision)},
+        (Care(code, care),),
+    )
+
+
+def _cared(table: TruthTable, care: CareSet) -> TruthTable:
+    return table.with_care(care.project(tuple(range(len(table.inputs)))))
+
+
+def _all(node: Table | Match | Instance) -> Word:
+    return tuple(Slice(net, 0, width) for net, width in node.drives.items())
+
+
+def _any(width: int) -> TruthTable:
+    """The OR of so many bits."""
+    names = tuple(f"class_bit{i}" for i in range(width))
+    return TruthTable.exact(names, ("foreground",), np.arange(1 << width)[:, np.newaxis] > 0)

@@ -1,0 +1,35 @@
+"""Which specification belongs to a model: the one place where verification looks at the kind of a model."""
+
+from collections.abc import Mapping
+
+from wnn2hdl.ir import EdgeFilter, Neighbourhood, WisardModel
+from wnn2hdl.ir.care import CareSet
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.verify.block import block_specification
+from wnn2hdl.verify.neighbourhood import neighbourhood_specification
+from wnn2hdl.verify.specification import Specification
+
+
+def specify(model: WisardModel, edges: EdgeFilter | None, care: Mapping[str, CareSet]) -> Specification:
+    """What the circuits made from a model have to compute.
+
+    Args:
+        model: the model.
+        edges: the edge filter of the design, if it has one.
+        care: the care sets of circuits by name; where one is missing, everything matters.
+
+    Raises:
+        InputError: the model reads no pixels, or a care set is empty.
+    """
+    if isinstance(model.encoder, Neighbourhood):
+        return neighbourhood_specification(model, model.encoder, care)
+    return block_specification(model, edges, care)
+
+
+def care_sets(circuit: Circuit) -> dict[str, CareSet]:
+    """The care set of each definition of a circuit that has one, by name."""
+    return {
+        name: definition.care[0].allowed
+        for name, definition in circuit.definitions().items()
+        if definition.care
+    }
