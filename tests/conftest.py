@@ -47,17 +47,20 @@ def write_build() -> Callable[..., Path]:
 
     Model, design and networks are real; changes are those of the fields of `BuildReport`.
     """
-    from wnn2hdl.build.design import Design, tables
+    from wnn2hdl.build.design import Design
     from wnn2hdl.build.reporting import model_figures
     from wnn2hdl.dataset import from_samples
     from wnn2hdl.edges import boundary
     from wnn2hdl.emit import write_manifest
     from wnn2hdl.encode import parse_bits
     from wnn2hdl.files import write_json
-    from wnn2hdl.minimise import map_luts
-    from wnn2hdl.report import BuildReport, Care, PartFigures, Parts, Proof, report_dict
+    from wnn2hdl.lower.targets import TARGETS, Ingredients
+    from wnn2hdl.minimise.circuit import minimise
+    from wnn2hdl.report import BuildReport, Care, PartFigures, Proof, report_dict
     from wnn2hdl.training.discriminators import train
-    from wnn2hdl.verify.specification import Specification
+
+    def silent(step: str, done: int, total: int) -> None:
+        """No progress is shown."""
 
     model = train(
         from_samples(2, 64, seed=1),
@@ -66,19 +69,22 @@ def write_build() -> Callable[..., Path]:
         rams=6,
         bleaching=None,
         seed=0,
-        progress=lambda *_: None,
+        progress=silent,
     )
-    specification = Specification.exact(model, boundary())
-    networks = {name: map_luts(table, effort=0).network for name, table in tables(specification).items()}
-    design = Design(specification, "exact", "block", "luts", networks)
-    luts = {**{name: len(network.luts) for name, network in networks.items()}, "match": 10, "sobel": 74}
+    target = TARGETS["block"]
+    circuit = minimise(target.lower(Ingredients(model, boundary())), 0, silent).circuit
+    design = Design(model, boundary(), circuit, target, "exact", "cells", "made_up", ())
+    luts = {
+        **{name: len(network.luts) for name, network in design.networks.items()},
+        "match": 10,
+        "sobel": 74,
+    }
     luts["block"] = 9 * luts["pixel"] + luts["edge"]
-    figures = {part: PartFigures(count, carry4=0, delay_ps=100 * count) for part, count in luts.items()}
     report = BuildReport(
         name="made-up",
         target="block",
         mode="exact",
-        parts=Parts(**figures),
+        parts={part: PartFigures(count, carry4=0, delay_ps=100 * count) for part, count in luts.items()},
         proof=Proof("proved", "SAT", 0.5),
         care=Care(256, 1.0, 256),
         accuracy=0.9,

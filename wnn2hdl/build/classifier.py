@@ -45,5 +45,5 @@ def circuit_classifier(design: Design) -> PixelTable:
 
 def circuit_answers(design: Design) -> NDArray[np.int64]:
     """Class index for every code as the circuit computes it, cared for or not: int64 ``[2**width]``."""
-    decision = next(table for _, table in design.circuit.tables() if table.name == DECISION)
+    decision = next(table for table in design.circuit.tables().values() if table.name == DECISION)
     return bits_to_codes(decision.function.evaluate(np.arange(1 << len(decision.function.inputs))))

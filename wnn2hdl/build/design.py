@@ -11,7 +11,7 @@ from wnn2hdl.ir import EdgeFilter, LutNetwork, Style, WisardModel
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
-from wnn2hdl.ir.identifiers import require_name
+from wnn2hdl.ir.identifiers import require_name, require_unreserved
 from wnn2hdl.lower.targets import TARGETS, Target
 from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.specify import care_sets, specify
@@ -63,7 +63,7 @@ class Design:
         """The LUT networks of the design, by the names of `Circuit.tables`."""
         return {
             name: table.function
-            for name, table in self.circuit.tables()
+            for name, table in self.circuit.tables().items()
             if isinstance(table.function, LutNetwork)
         }
 
@@ -133,7 +133,14 @@ class Design:
         return design
 
     def check(self) -> None:
-        """Raise ValueError if the circuit is not one of this target, or cares for less than its mode says."""
+        """Check that the circuit is one that is known, and cares for all that its mode says.
+
+        Raises:
+            ValueError: it is not, or does not.
+            InputError: a module would be called like a reserved word.
+        """
+        for part in self.parts:
+            require_unreserved(self.module(part))
         unknown = self.parts.keys() - self.specification.claims.keys()
         if unknown:
             raise ValueError(f"nothing is known about the circuits {', '.join(sorted(unknown))}")

@@ -108,6 +108,7 @@ def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progr
         (),
     )
     design = replace(design, header=_header(design, options))
+    design.check()
     imagery, agreement = options.imagery, None
     if imagery and edges is not None:
         agreement = edge_agreement(edges, model, imagery, progress)

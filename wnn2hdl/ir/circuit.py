@@ -4,7 +4,8 @@ A circuit has ports, nodes that are connected by words of bits, and care sets. A
 `wnn2hdl.lower` that returns one; every later stage loops over its nodes and knows no target.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -123,15 +124,24 @@ class Circuit:
             raise ValueError(f"{self.name} is inside itself")
         return found | {self.name: self}
 
-    def tables(self) -> Iterator[tuple[str, Table]]:
-        """Every table of every definition, with a name that is unique among them.
+    def tables(self) -> dict[str, Table]:
+        """Every table of every definition by a name that is unique among them.
 
-        A table that is alone in its circuit goes by the name of the circuit.
+        A table that is alone in its circuit goes by the name of the circuit, all others by their own, or by
+        both where two would be called alike.
         """
-        for name, circuit in self.definitions().items():
-            tables = [node for node in circuit.nodes if isinstance(node, Table)]
-            for node in tables:
-                yield (name if len(tables) == 1 else f"{name}_{node.name}"), node
+        tables = [
+            (name, node, sum(isinstance(other, Table) for other in circuit.nodes) == 1)
+            for name, circuit in self.definitions().items()
+            for node in circuit.nodes
+            if isinstance(node, Table)
+        ]
+        short = Counter(name if alone else node.name for name, node, alone in tables)
+        return {
+            (plain if short[plain] == 1 else f"{name}_{node.name}"): node
+            for name, node, alone in tables
+            for plain in [name if alone else node.name]
+        }
 
     def rebuilt(self, change: Callable[["Circuit"], "Circuit"]) -> "Circuit":
         """The circuit with ``change`` applied to each definition once, innermost first."""

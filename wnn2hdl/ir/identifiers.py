@@ -21,7 +21,7 @@ def require_name(name: str) -> str:
     """A name that modules can begin with, as it was given.
 
     Raises:
-        InputError: it is no identifier of Verilog and VHDL alike, too long, or a reserved word.
+        InputError: it is no identifier of Verilog and VHDL alike, or too long.
     """
     plain = _NAME.fullmatch(name) and "__" not in name and not name.endswith("_")
     if not plain or len(name) > _LONGEST:
@@ -30,18 +30,20 @@ def require_name(name: str) -> str:
             value=repr(name if len(name) <= _LONGEST else name[:_LONGEST] + "…"),
             hint=f"use letters, digits and single underscores, a letter first, {_LONGEST} at most",
         )
-    if name.lower() in RESERVED:
-        raise InputError("the name is a reserved word of an HDL or of C++", value=name, hint="choose another")
     return name
 
 
-def name_from(text: str) -> str:
-    """A name made from any text, such as that of a folder: other characters become underscores.
+def require_unreserved(module: str) -> None:
+    """Raise InputError if a whole name, such as ``first_match``, is a reserved word."""
+    if module.lower() in RESERVED:
+        raise InputError(
+            "a module would be called like a reserved word", value=module, hint="choose another --name"
+        )
 
-    Args:
-        text: what the user called it.
-    """
+
+def name_from(text: str) -> str:
+    """A name made from any text, such as that of a folder: other characters become underscores."""
     joined = "_".join(part for part in re.split(r"[^A-Za-z0-9]+", text) if part)[:_LONGEST].rstrip("_")
-    if not joined or not joined[0].isalpha() or joined.lower() in RESERVED:
+    if not joined or not joined[0].isalpha():
         joined = f"wnn_{joined}".rstrip("_")[:_LONGEST]
     return joined

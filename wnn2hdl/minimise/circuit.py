@@ -39,7 +39,7 @@ def minimise(circuit: Circuit, effort: int, progress: Progress) -> MinimisedCirc
     covers: dict[str, Minimised] = {}
     methods: dict[str, str] = {}
     mapped: dict[int, Table] = {}
-    for name, table in circuit.tables():
+    for name, table in circuit.tables().items():
         if not isinstance(table.function, TruthTable):
             continue
         progress(f"minimising {name}", 0, 2)

@@ -119,7 +119,7 @@ def build_page(
         answers=target is None or target.classifies or target.has_edges,
         window=_window(window) if window else (),
         places={
-            f"neighbourhood_{name}": f"row {tap.row}, column {tap.column}"
+            name: f"row {tap.row}, column {tap.column}"
             for name, tap in zip(window.names, window.taps, strict=True)
         }
         if window

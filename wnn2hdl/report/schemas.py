@@ -14,7 +14,14 @@ from wnn2hdl.errors import ModelFileError
 
 def check_report(report: Mapping[str, Any], path: Path) -> None:
     """Raise ModelFileError unless an object is a report that this version of wnn2hdl understands."""
-    check(report, "report", path, "compile the model again with this wnn2hdl")
+    hint = "compile the model again with this wnn2hdl"
+    check(report, "report", path, hint)
+    if report["target"] not in report["parts"]:
+        raise ModelFileError(
+            "not a report, or one of another version",
+            value=f"{path} (the target {report['target']} is none of its parts)",
+            hint=hint,
+        )
 
 
 def check(data: Mapping[str, Any], name: str, path: Path, hint: str) -> None:

@@ -1,21 +1,22 @@
 """A circuit is checked where it was written and where it was counted; emitted text: beside `compile`."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from wnn2hdl.build import checking
-from wnn2hdl.build.circuits import Circuits, emit
 from wnn2hdl.build.design import Design
+from wnn2hdl.build.emission import Files, emit
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.synth import Job, Synthesis, synthesise_job
+from wnn2hdl.synth import Job, Synthesis, synthesise_all
 
 pytestmark = pytest.mark.slow
 
-Emitted = tuple[Design, Circuits]
+Emitted = tuple[Design, Files]
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -24,37 +25,55 @@ def silent(step: str, done: int, total: int) -> None:
 
 @pytest.fixture
 def emitted(model: WisardModel, tmp_path: Path) -> Emitted:
-    design = plan(model, CompileOptions(target="pixel"), silent).design
-    design.save(tmp_path)
-    return design, emit(design, tmp_path, sobel_threshold=128, options=[])
+    design = plan(model, "mine", CompileOptions(target="pixel"), silent).design
+    return design, emit(design, tmp_path, sobel_threshold=128)
 
 
-def spoiled(job: Job) -> Synthesis:
-    """One bit of the first LUT of the netlist is not what synthesis made of it."""
-    made = synthesise_job(job)
+def spoiled(jobs: Mapping[str, Job]) -> dict[str, Synthesis]:
+    """One bit of the first LUT of each netlist is not what synthesis made of it."""
+    return {
+        name: replace(made, netlist_verilog=flipped(made.netlist_verilog))
+        for name, made in synthesise_all(jobs).items()
+    }
+
+
+def flipped(netlist: str) -> str:
     text = re.sub(
         r"'h([0-9a-f]+)",
         lambda digits: f"'h{int(digits[1], 16) ^ 1:0{len(digits[1])}x}",
-        made.netlist_verilog,
+        netlist,
         count=1,
     )
-    assert text != made.netlist_verilog
-    return replace(made, netlist_verilog=text)
+    assert text != netlist
+    return text
 
 
 def test_the_model_s_circuit_passes_and_all_is_timed(emitted: Emitted) -> None:
-    checked = checking.check(*emitted, silent)
+    checked = checking.check(*emitted, silent, afresh=True)
     assert (checked.status, checked.failure) == ("proved", None)
     assert set(checked.syntheses) == {"pixel", "sobel"}
-    assert set(checked.seconds) == {"simulate pixel", "prove", "pixel", "sobel"}
+    assert set(checked.seconds) == {"simulate", "prove", "synthesise"}
     assert checked.vectors == {"pixel": 256}
 
 
 def test_a_netlist_that_is_not_its_verilog_is_found(
     emitted: Emitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checking, "synthesise_job", spoiled)
-    checked = checking.check(*emitted, silent)
+    monkeypatch.setattr(checking, "synthesise_all", spoiled)
+    checked = checking.check(*emitted, silent, afresh=True)
     assert checked.status == "failed"
     assert checked.failure is not None
     assert checked.failure.startswith("the mapped netlist of the pixel differs from the model ")
+
+
+def test_the_matcher_is_simulated_once_and_remembered(
+    model: WisardModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("WNN2HDL_CACHE", str(tmp_path / "cache"))
+    design = plan(model, "mine", CompileOptions(target="match"), silent).design
+    files = emit(design, tmp_path, sobel_threshold=128)
+    first, second = (checking.check(design, files, silent, afresh=False) for _ in range(2))
+    assert first.remembered == ()
+    assert second.remembered == ("match",)
+    assert first.vectors == second.vectors == {"match": 2**18}
+    assert checking.check(design, files, silent, afresh=True).remembered == ()

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from wnn2hdl.build.checking import Checked, check
-from wnn2hdl.build.circuits import Circuits
 from wnn2hdl.build.compile import Build, compile_model, require_luts
-from wnn2hdl.build.design import Design, Target
+from wnn2hdl.build.design import Design
+from wnn2hdl.build.emission import Files
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.ir import WisardModel
@@ -25,14 +25,15 @@ def silent(step: str, done: int, total: int) -> None:
 def test_a_build_holds_everything_and_says_what_it_costs(build: Path) -> None:
     assert {path.name for path in build.iterdir()} >= {
         "block.v",
-        "block_match_tb.v",
-        "block_match_vectors.hex",
+        "block_block_match_tb.v",
+        "block_block_match_vectors.hex",
         "design.json",
         "manifest.json",
         "model.json",
         "report.json",
         "report.md",
         "sobel.v",
+        "xilinx_cells_sim.v",
     }
     report = json.loads((build / "report.json").read_text())
     assert report["proof"]["status"] == "proved"
@@ -54,11 +55,11 @@ def test_the_same_inputs_give_the_same_bytes(
 ) -> None:
     options = CompileOptions(target="pixel", mode="domain", care=imagery)
     compile_model(model, tmp_path / "pixel", options, silent)
-    for name in ("pixel.v", "pixel_tb.v", "pixel_vectors.hex", "design.json", "sobel.v"):
+    for name in ("pixel.v", "pixel_pixel_tb.v", "pixel_pixel_vectors.hex", "design.json", "sobel.v"):
         assert (tmp_path / "pixel" / name).read_bytes() == (pixel_build / name).read_bytes()
 
 
-@pytest.mark.parametrize("style", ["rtl", "luts"])
+@pytest.mark.parametrize("style", ["equations", "cells"])
 def test_a_pixel_alone_in_both_styles(model: WisardModel, tmp_path: Path, style: str) -> None:
     options = CompileOptions(target="pixel", style=style)  # type: ignore[arg-type]
     told: list[tuple[str, int]] = []
@@ -67,26 +68,25 @@ def test_a_pixel_alone_in_both_styles(model: WisardModel, tmp_path: Path, style:
     starts = [step for step, done in told if done == 0]
     assert starts == [
         "minimising pixel",
-        "minimising edge",
         "writing Verilog",
         "simulating, proving, counting",
     ]
     assert built.report["care"]["codes"] == 2**8
     text = (tmp_path / "pixel" / "pixel.v").read_text()
-    assert ("DONT_TOUCH" in text) == (style == "luts")
+    assert ("DONT_TOUCH" in text) == (style == "cells")
 
 
 def test_a_wrong_circuit_does_not_leave_unnoticed(
     model: WisardModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The emitted text is spoiled between writing and checking: one bit of one LUT.
-    def spoil_then_check(design: Design, circuits: Circuits, progress: Progress) -> Checked:
-        path = circuits.verilog
+    def spoil_then_check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> Checked:
+        path = files.verilog
         text = path.read_text()
         place = text.index("'h", text.index(".INIT")) + 2
         digit = format(int(text[place], 16) ^ 1, "x")
         path.write_text(text[:place] + digit + text[place + 1 :])
-        return check(design, circuits, progress)
+        return check(design, files, progress, afresh=afresh)
 
     monkeypatch.setattr("wnn2hdl.build.compile.check", spoil_then_check)
     built = compile_model(model, tmp_path / "pixel", CompileOptions(target="pixel"), silent)
@@ -118,7 +118,7 @@ def test_labels_of_other_classes_are_refused_before_the_work(
 
 @pytest.mark.parametrize("target", ["edge", "match"])
 def test_a_target_without_a_classifier_has_neither_accuracy_nor_codes(
-    model: WisardModel, tested: CompileOptions, tmp_path: Path, target: Target
+    model: WisardModel, tested: CompileOptions, tmp_path: Path, target: str
 ) -> None:
     folder = tmp_path / target
     compile_model(model, folder, replace(tested, target=target), silent)

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from wnn2hdl.build.design import Design, tables
-from wnn2hdl.edges import boundary
+from wnn2hdl.build.design import Design
 from wnn2hdl.errors import ModelFileError
-from wnn2hdl.ir import LutNetwork, WisardModel
-from wnn2hdl.verify.specification import Specification
+from wnn2hdl.ir import LutNetwork, TruthTable
+from wnn2hdl.lower.targets import Ingredients
+from wnn2hdl.verify.specify import care_sets
 
 pytestmark = pytest.mark.slow
 
@@ -28,28 +28,38 @@ def test_a_design_survives_its_file(build: Path, tmp_path: Path) -> None:
 
 def test_each_network_is_its_table_where_that_is_cared_for(build: Path) -> None:
     design = Design.load(build)
-    for name, table in tables(design.specification).items():
+    lowered = design.target.lower(Ingredients(design.model, design.edges, care_sets(design.circuit)))
+    for name, node in lowered.tables().items():
+        table = node.function
+        assert isinstance(table, TruthTable)
         codes = np.flatnonzero(table.care)
         assert 0 < codes.size < table.care.size, "a build in domain mode leaves codes out"
         answers = design.networks[name].evaluate(codes)
         np.testing.assert_array_equal(answers, table.values[codes])
 
 
-def test_in_exact_mode_every_code_is_cared_for(model: WisardModel) -> None:
-    specification = Specification.exact(model, boundary())
-    assert all(table.care.all() for table in tables(specification).values())
-
-
 def lost(data: dict[str, Any]) -> None:
-    del data["edge"]
+    del data["circuit"]
 
 
 def beyond(data: dict[str, Any]) -> None:
-    data["pixel_care"].append(1 << 20)
+    data["circuit"][0]["care"][0]["codes"].append(1 << 20)
 
 
 def twisted(data: dict[str, Any]) -> None:
-    data["pixel"] = "a network"
+    data["circuit"][0]["nodes"][0]["network"] = "a network"
+
+
+def unknown(data: dict[str, Any]) -> None:
+    data["circuit"][-1]["name"] = "sobel"
+
+
+def exact(data: dict[str, Any]) -> None:
+    data["mode"] = "exact"
+
+
+def commented(data: dict[str, Any]) -> None:
+    data["header"].append("a comment\nmodule LUT6; endmodule")
 
 
 def newer(data: dict[str, Any]) -> None:
@@ -66,6 +76,9 @@ def foreign(data: dict[str, Any]) -> None:
         (lost, "the design is damaged"),
         (beyond, "the design is damaged"),
         (twisted, "the design is damaged"),
+        (unknown, "nothing is known about the circuits sobel"),
+        (exact, "pixel has don't-cares in exact mode"),
+        (commented, "is no line of a comment"),
         (newer, "not a design of this wnn2hdl"),
         (foreign, "the design was made from another model"),
     ],

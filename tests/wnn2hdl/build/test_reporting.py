@@ -56,8 +56,8 @@ def test_a_build_notes_confusion_model_and_command(build: Path) -> None:
 
 def test_the_command_leaves_out_what_is_usual_and_quotes() -> None:
     assert command("x", CompileOptions()) == "wnn2hdl compile x/model.json -o x-again"
-    options = CompileOptions(care=Path("/my imagery"), care_minimum=3, style="rtl", sobel_threshold=99)
-    assert command("x", options).endswith("--care '/my imagery' --care-min 3 --emit rtl")
+    options = CompileOptions(care=Path("/my imagery"), care_minimum=3, style="equations", sobel_threshold=99)
+    assert command("x", options).endswith("--care '/my imagery' --care-min 3 --style equations")
 
 
 def test_the_command_finds_its_imagery_from_the_folder_that_it_is_run_in(

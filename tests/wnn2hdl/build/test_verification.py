@@ -44,6 +44,7 @@ def test_a_flipped_bit_is_noticed_by_its_hash_and_by_the_proof(copy: Path) -> No
     assert "pixel.v was changed" in problems
     sign_again(copy)
     problems, _ = verify_build(copy, silent)
+    assert problems[0].startswith("pixel.v is not what the compiler writes, from line ")
     assert any("differs from the model" in problem for problem in problems)
 
 
@@ -65,7 +66,8 @@ def test_verilog_that_no_tool_can_read_is_a_finding(copy: Path) -> None:
     path.write_text(path.read_text().replace("endmodule", "endmodul", 1))
     problems, checked = verify_build(copy, silent)
     assert problems[0] == "pixel.v was changed"
-    assert "syntax error" in problems[1]
+    assert problems[1].startswith("pixel.v is not what the compiler writes, from line ")
+    assert "syntax error" in problems[2]
     assert checked is None
 
 

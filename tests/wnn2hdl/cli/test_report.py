@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from wnn2hdl.report import PartFigures, Parts, Proof
+from wnn2hdl.report import PartFigures, Proof
 
 Run = Callable[..., Any]
 
@@ -123,7 +123,7 @@ def test_luts_may_rise_as_far_as_allowed(
     report(builds[0], "--write-baseline", "baseline.json")
     now = json.loads(Path("build/a/report.json").read_text())["parts"]
     now["block"]["luts"] += 2
-    parts = Parts(**{part: PartFigures(**figures) for part, figures in now.items()})
+    parts = {part: PartFigures(**figures) for part, figures in now.items()}
     more = write_build(tmp_path / "new" / "a", parts=parts)
     gate = (more, "--baseline", "baseline.json")
     assert report(*gate)[0] == 1

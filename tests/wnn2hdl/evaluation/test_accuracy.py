@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from wnn2hdl.build.classifier import circuit_answers
 from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, from_samples
 from wnn2hdl.encode import parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import SquareVote, evaluate, majority_labels, with_halo
 from wnn2hdl.evaluation.classifiers import PixelTable, model_classifier
-from wnn2hdl.ir import LutNetwork, WisardModel
+from wnn2hdl.ir import WisardModel
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -99,8 +98,3 @@ def test_images_are_evaluated_one_by_one(model: WisardModel) -> None:
     assert result.names == ("landscape-00050", "landscape-00051")
     assert result.confusion.sum(axis=(1, 2)).tolist() == [96 * 96] * 2
     assert result.accuracy > 0.8
-
-
-def test_a_circuits_answers_are_class_indices() -> None:
-    network = LutNetwork(("a", "b"), (), (("class_bit0", "b"), ("class_bit1", "a")))
-    assert circuit_answers(network).tolist() == [0, 2, 1, 3]

@@ -10,7 +10,6 @@ from wnn2hdl.report import (
     Care,
     Minimised,
     PartFigures,
-    Parts,
     Proof,
     report_dict,
     report_markdown,
@@ -23,7 +22,7 @@ FULL = BuildReport(
     name="amazon",
     target="block",
     mode="domain",
-    parts=Parts(block=FIGURES),
+    parts={"block": FIGURES, "sobel": PartFigures()},
     count="synth_xilinx -family xc7",
     device="xc7z020clg484",
     utilisation={"block": {"luts": 0.0338, "ffs": 0.0}},
@@ -82,7 +81,7 @@ def test_published_figures_stand_under_their_own_heading_only() -> None:
 
 
 def test_a_report_with_nothing_to_tell_has_no_empty_tables() -> None:
-    text = page(BuildReport("empty", "pixel", "exact", Parts()))
+    text = page(BuildReport("empty", "pixel", "exact", {}))
     assert "## Minimised" not in text
     assert "None" not in text
     assert "\n\n\n" not in text
