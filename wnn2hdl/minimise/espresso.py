@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from pyeda.boolalg.espresso import DTYPE, FTYPE, RTYPE, set_config
 from pyeda.boolalg.espresso import espresso as _espresso
 
-from wnn2hdl.ir import Cover, Cube, TruthTable, codes_to_bits
+from wnn2hdl.ir import Cover, Cube, TruthTable, codes_to_bits, irredundant_cover, pack_contents
 from wnn2hdl.minimise.check import require_equal
 
 # The library keeps these in a global that other callers may have changed. Its improvement loop gives equal
@@ -88,32 +87,10 @@ def _espresso_cubes(table: TruthTable) -> list[Cube]:
 
 
 def _irredundant_cubes(table: TruthTable) -> list[Cube]:
-    """An irredundant sum of products for each output (Minato and Morreale), in time linear in its cubes."""
+    """An irredundant sum of products for each output."""
     cubes = []
     for position, column in enumerate(table.values.T):
-        lower, upper = _as_integer(column & table.care), _as_integer(column | ~table.care)
-        found, _ = _irredundant(lower, upper, len(table.inputs))
-        cubes += [Cube(mask, value, 1 << position) for mask, value in found]
+        lower, upper = pack_contents(column & table.care), pack_contents(column | ~table.care)
+        terms = irredundant_cover(lower, upper, len(table.inputs))
+        cubes += [Cube(mask, value, 1 << position) for mask, value in terms]
     return cubes
-
-
-def _irredundant(lower: int, upper: int, width: int) -> tuple[list[tuple[int, int]], int]:
-    """Cubes (mask, value) of a function between two bounds, and that function, bit ``c`` for code ``c``."""
-    if not lower:
-        return [], 0
-    if upper == (1 << (1 << width)) - 1:
-        return [(0, 0)], upper
-    literal, half = 1 << (width - 1), 1 << (width - 1)
-    whole = (1 << half) - 1
-    lower0, lower1, upper0, upper1 = lower & whole, lower >> half, upper & whole, upper >> half
-    cubes0, reached0 = _irredundant(lower0 & ~upper1, upper0, width - 1)
-    cubes1, reached1 = _irredundant(lower1 & ~upper0, upper1, width - 1)
-    rest = (lower0 & ~reached0) | (lower1 & ~reached1)
-    common, reached = _irredundant(rest, upper0 & upper1, width - 1)
-    cubes = [(mask | literal, value) for mask, value in cubes0]
-    cubes += [(mask | literal, value | literal) for mask, value in cubes1]
-    return cubes + common, (reached0 | reached) | (reached1 | reached) << half
-
-
-def _as_integer(flags: NDArray[np.bool_]) -> int:
-    return int.from_bytes(np.packbits(flags, bitorder="little").tobytes(), "little")
