@@ -1,15 +1,18 @@
 """Two-level minimisation with PyEDA's espresso, and irredundant covers for tables too wide for it."""
 
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
-from pyeda.boolalg.espresso import DTYPE, FTYPE, RTYPE, set_config
+from pyeda.boolalg.espresso import DTYPE, FTYPE, RTYPE, get_config, set_config
 from pyeda.boolalg.espresso import espresso as _espresso
 
 from wnn2hdl.ir import Cover, Cube, TruthTable, codes_to_bits, irredundant_cover, pack_contents
 from wnn2hdl.minimise.check import require_equal
 
-# The library keeps these in a global that other callers may have changed. Its improvement loop gives equal
+# The library keeps these in a global, for all who call it. Its improvement loop gives equal
 # calls different covers (measured: 4 of 15 random tables of 8 inputs), so only the first pass is used: it is
 # repeatable, found the same covers on trained tables and 2 to 6 per cent more literals on random ones.
 _CONFIG = {
@@ -19,7 +22,10 @@ _CONFIG = {
     "unwrap_onset": True,
     "recompute_onset": False,
     "use_super_gasp": False,
+    "skip_make_sparse": False,
 }
+_ONE_AT_A_TIME = threading.Lock()
+
 # Codes handed to espresso, one cube each. Measured on exact threshold functions: 1.6 s for 2**13 ON codes of
 # 14 inputs, 22 to 101 s for 2**15 of 16, where the irredundant cover took 0.1 s for the same 943 cubes.
 MAX_CODES = 1 << 14
@@ -73,8 +79,8 @@ def _espresso_cubes(table: TruthTable) -> list[Cube]:
     literals = (codes_to_bits(codes, len(table.inputs)) + np.uint8(1)).tolist()
     outputs = np.where(table.care[:, np.newaxis], table.values, 2)[codes].tolist()
     given = [(tuple(x), tuple(y)) for x, y in zip(literals, outputs, strict=True)]
-    set_config(**_CONFIG)
-    found = _espresso(len(table.inputs), len(table.outputs), given, intype=FTYPE | other)
+    with _configured():
+        found = _espresso(len(table.inputs), len(table.outputs), given, intype=FTYPE | other)
     cubes = [
         Cube(
             mask=sum(1 << x for x, literal in enumerate(inputs) if literal != 3),
@@ -84,6 +90,18 @@ def _espresso_cubes(table: TruthTable) -> list[Cube]:
         for inputs, flags in found
     ]
     return sorted(cubes, key=lambda cube: (cube.outputs, cube.mask, cube.value))
+
+
+@contextmanager
+def _configured() -> Iterator[None]:
+    """The library with `_CONFIG`, for one thread at a time; its other users find it as they left it."""
+    with _ONE_AT_A_TIME:
+        before = get_config()
+        set_config(**_CONFIG)
+        try:
+            yield
+        finally:
+            set_config(**before)
 
 
 def _irredundant_cubes(table: TruthTable) -> list[Cube]:

@@ -1,7 +1,7 @@
 """LUT mapping as a stage: many ways to map a table, and the best network that is proved right."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,32 +109,6 @@ def map_luts(
     network = search.best.network(table)
     require_equal(table, network, "the LUT network")
     return Mapping(network, search.method, time.perf_counter() - started, tuple(search.candidates))
-
-
-def map_many(
-    tables: Sequence[TruthTable], *, effort: int = 0, progress: Callable[[int], None] | None = None
-) -> list[LutNetwork]:
-    """Map many tables; equal tables are mapped once.
-
-    Args:
-        tables: the tables.
-        effort: as for `map_luts`.
-        progress: called with the number of tables done.
-
-    Returns:
-        A network for each table.
-    """
-    known: dict[tuple[object, ...], LutNetwork] = {}
-    networks = []
-    for count, table in enumerate(tables, 1):
-        cared = (table.values & table.care[:, np.newaxis]).tobytes()
-        key = (table.inputs, table.outputs, table.care.tobytes(), cared)
-        if key not in known:
-            known[key] = map_luts(table, effort=effort).network
-        networks.append(known[key])
-        if progress is not None:
-            progress(count)
-    return networks
 
 
 class _Search:
