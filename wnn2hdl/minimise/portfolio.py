@@ -75,7 +75,7 @@ def map_luts(
 ) -> Mapping:
     """Map a table to the fewest LUTs that the effort finds; then fewest levels, then fewest multiplexers.
 
-    The result depends on table and effort only.
+    The result depends on table and effort only, and on the versions of `GENERATORS`.
 
     Args:
         table: 1 to 20 inputs, any number of outputs.
@@ -86,6 +86,7 @@ def map_luts(
         InputError: there is no such effort.
         CheckError: no way led to a right network.
         ToolError: ABC is needed and missing.
+        ToolStoppedError: ABC was killed, or took an hour for one recipe.
     """
     if effort not in EFFORTS:
         raise InputError("no such effort", value=effort, hint="give 0, 1, 2 or 3")
@@ -101,7 +102,7 @@ def map_luts(
     if not search.done and effort > 1 and search.best is not None:
         if not table.care.all():
             search.offer_all(truth_candidates(_filled(table, search.best), effort - 1))
-        search.offer_all(network_candidates(search.best, effort))
+        search.offer_all(network_candidates(search.best))
     if not search.done and _MOVES[effort]:
         search.offer_all(_improved(search.leaders(), table, effort))
     if search.best is None:
