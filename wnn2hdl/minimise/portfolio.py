@@ -2,7 +2,8 @@
 
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from wnn2hdl.minimise.recipes import (
     two_lut_candidates,
 )
 from wnn2hdl.minimise.support import minimum_supports
+from wnn2hdl.tools import abc_version
 
 EFFORTS = (0, 1, 2, 3)
 
@@ -60,14 +62,27 @@ class Mapping:
     Attributes:
         network: equal to the table on every cared-for code.
         method: how the winner was found.
-        seconds: wall-clock time of the whole search.
+        seconds: wall-clock time of the whole search, which two equal mappings need not share.
         candidates: all networks tried, in order.
     """
 
     network: LutNetwork
     method: str
-    seconds: float
+    seconds: float = field(compare=False)
     candidates: tuple[Candidate, ...]
+
+
+def generators() -> dict[str, str]:
+    """All outside of this package that decides what a table is minimised or mapped to, each with its version.
+
+    NumPy draws the random numbers and PyEDA's espresso makes the covers. Besides, ABC and espresso sort with
+    the C library's ``qsort``, and one of ABC's commands draws from its ``rand``: another C library may settle
+    ties another way.
+
+    Raises:
+        ToolError: ABC is missing.
+    """
+    return {"numpy": version("numpy"), "pyeda": version("pyeda"), "ABC": f"of {abc_version()}"}
 
 
 def map_luts(
@@ -75,7 +90,7 @@ def map_luts(
 ) -> Mapping:
     """Map a table to the fewest LUTs that the effort finds; then fewest levels, then fewest multiplexers.
 
-    The result depends on table and effort only, and on the versions of `GENERATORS`.
+    The result depends on table and effort only, and on the versions of `generators`.
 
     Args:
         table: 1 to 20 inputs, any number of outputs.
