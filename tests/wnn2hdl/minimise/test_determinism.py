@@ -15,16 +15,13 @@ from wnn2hdl.tools import find_yosys
 
 
 def tables() -> list[TruthTable]:
-    """Two outputs that share logic, one with don't-cares, and one too wide for decomposition at effort 1."""
+    """Two outputs that share logic, one with don't-cares, and one that keeps ABC busy for some seconds."""
     rng = np.random.default_rng(0)
     made = []
-    for width, outputs, care in ((8, 2, 1.0), (9, 1, 0.4)):
-        values = rng.random((1 << width, outputs)) < 0.4
+    for width, outputs, on, care in ((8, 2, 0.4, 1.0), (9, 1, 0.4, 0.4), (14, 1, 0.1, 1.0)):
+        values = rng.random((1 << width, outputs)) < on
         names = tuple(f"x{i}" for i in range(width)), tuple(f"y{i}" for i in range(outputs))
         made.append(TruthTable(*names, values, rng.random(1 << width) < care))
-    codes = np.arange(1 << 14)
-    sums = (codes & 127) + (codes >> 7) > 100
-    made.append(TruthTable.exact(tuple(f"x{i}" for i in range(14)), ("y",), sums.reshape(-1, 1)))
     return made
 
 
