@@ -5,9 +5,8 @@ What comes out depends on what goes in alone, not on how fast or busy the machin
 - No command has a time limit. `&deepsyn` and `lutexact` could have one (``-T``), which is off unless asked
   for; what bounds the work are counts of conflicts, nodes, cuts, divisors and rounds, at their defaults.
 - Commands that draw random numbers (`dch`, `scorr`, `ifraig`, `&fraig`, `&dch`, `&ttopt`, `&deepsyn`,
-  `&decpla`) seed them anew with a constant, but balancing (`dc2`, `dch`) goes on with the state that the
-  command before it left. So each recipe gets a process of its own, and what it gives does not depend on
-  which others ran.
+  `&decpla`) seed them anew with a constant each time. Even so each recipe gets a process of its own: no
+  state that another left, and no crash of another, can reach it.
 - A recipe is asked only for functions small enough for it, counted in nodes of ABC's own network. The limit
   on seconds is a net for the unforeseen, far beyond what was measured: whoever falls into it gets an error,
   not another circuit.
