@@ -72,6 +72,10 @@ class ToolError(Wnn2hdlError):
         self.output = output
 
 
+class ToolStoppedError(ToolError):
+    """An outside program ran out of time, or was killed from outside; its input may be right all the same."""
+
+
 class CheckError(Wnn2hdlError):
     """A check or a gate failed: the circuit differs from the model, or costs more than allowed."""
 

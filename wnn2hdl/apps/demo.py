@@ -138,7 +138,7 @@ def _trained(
     images, masks = (shlex.quote(str((folder / "training" / name).resolve())) for name in (IMAGES, MASKS))
     command = f"wnn2hdl train --images {images} --masks {masks}{choice} --seed {seed}"
     model = with_colours(model, dataset, progress)
-    return replace(model, training=model.training | {COMMAND: command})
+    return replace(model, training={**model.training, COMMAND: command})
 
 
 def _landscapes(folder: Path, count: int, seed: int, progress: Progress) -> Dataset:

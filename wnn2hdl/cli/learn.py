@@ -157,7 +157,7 @@ def train_command(
             model = options.train(dataset, seed, report)
         model = with_colours(model, dataset, report)
     command = spoken_command({"output", "as_json"})
-    model = replace(model, training=model.training | {COMMAND: command})
+    model = replace(model, training={**model.training, COMMAND: command})
     model.save(output)
     summary = _summary(model, output, len(dataset))
     if pareto:
@@ -176,7 +176,7 @@ def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
         "bleaching": model.bleaching,
         "images": images,
         "saturation": {"mean": float(saturation.mean()), "highest": float(saturation.max())},
-        "training": model.training,
+        "training": dict(model.training),
     }
 
 

@@ -3,7 +3,7 @@
 Neighbouring pixels are nearly equal, so a split by pixel would test on what was trained.
 """
 
-from wnn2hdl.dataset.histogram import ColourHistogram, colour_histogram, training_histogram
+from wnn2hdl.dataset.histogram import ColourHistogram, colour_histogram
 from wnn2hdl.dataset.labelled import CLASSES, Dataset, LabelledImage, cleared_classes, folds, split
 from wnn2hdl.dataset.regions import from_regions
 from wnn2hdl.dataset.sources import from_masks, from_samples
@@ -20,5 +20,4 @@ __all__ = [
     "from_regions",
     "from_samples",
     "split",
-    "training_histogram",
 ]

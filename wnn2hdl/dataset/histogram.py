@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.dataset.labelled import Dataset, LabelledImage
-from wnn2hdl.errors import InputError
+from wnn2hdl.dataset.labelled import LabelledImage
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,33 +34,3 @@ def colour_histogram(image: LabelledImage, classes: int) -> ColourHistogram:
     cells = image.labels.astype(np.int64) * len(colours) + place
     counts = np.bincount(cells, minlength=classes * len(colours)).reshape(classes, len(colours))
     return ColourHistogram(colours, counts.astype(np.int64))
-
-
-def training_histogram(dataset: Dataset) -> ColourHistogram:
-    """The colours of a whole set; one image is in memory at a time.
-
-    Raises:
-        InputError: a class has no pixel, so that nothing can be learned of it.
-    """
-    total = ColourHistogram(np.zeros(0, np.uint32), np.zeros((len(dataset.classes), 0), np.int64))
-    for image in dataset:
-        total = _add(total, colour_histogram(image, len(dataset.classes)))
-    empty = [
-        name for name, pixels in zip(dataset.classes, total.counts.sum(axis=1), strict=True) if not pixels
-    ]
-    if empty:
-        raise InputError(
-            f"no training pixel is labelled {' or '.join(empty)}",
-            value=f"{len(dataset)} images",
-            hint="add images that show every class",
-        )
-    return total
-
-
-def _add(one: ColourHistogram, other: ColourHistogram) -> ColourHistogram:
-    colours, place = np.unique(np.concatenate([one.colours, other.colours]), return_inverse=True)
-    counts = np.zeros((len(one.counts), len(colours)), dtype=np.int64)
-    # A colour occurs at most once in each histogram, so plain indexed addition is safe twice.
-    counts[:, place[: len(one.colours)]] += one.counts
-    counts[:, place[len(one.colours) :]] += other.counts
-    return ColourHistogram(colours, counts)

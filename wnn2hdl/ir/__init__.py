@@ -1,6 +1,7 @@
 """The contract between stages: encoders, models, tables, covers, LUT networks, windows and their files."""
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
 from wnn2hdl.ir.encoder import (
     CHANNELS,
     COLOURS,
@@ -13,9 +14,20 @@ from wnn2hdl.ir.encoder import (
     Tap,
     Thermometer,
 )
+from wnn2hdl.ir.equation import Equation, equation
 from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
-from wnn2hdl.ir.network import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux, Style
-from wnn2hdl.ir.tables import Cover, Cube, TruthTable
+from wnn2hdl.ir.network import (
+    CONSTANTS,
+    LUT_INPUTS,
+    MUX_CONTENTS,
+    Column,
+    Lut,
+    LutNetwork,
+    Mux,
+    Style,
+    look_up,
+)
+from wnn2hdl.ir.tables import TruthTable, pack_contents, unpack_contents
 from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
 
 __all__ = [
@@ -25,15 +37,18 @@ __all__ = [
     "CONSTANTS",
     "LUT_INPUTS",
     "MAX_TABLE_INPUTS",
+    "MUX_CONTENTS",
     "PIXEL_BITS",
     "PIXEL_BIT_NAMES",
     "WINDOW_BITS",
     "WINDOW_CODES",
     "BitSelect",
+    "Column",
     "Cover",
     "Cube",
     "EdgeFilter",
     "Encoder",
+    "Equation",
     "Lut",
     "LutNetwork",
     "Mux",
@@ -41,12 +56,18 @@ __all__ = [
     "PictureEncoder",
     "Style",
     "Tap",
+    "Term",
     "Thermometer",
     "TruthTable",
     "WisardModel",
     "bits_to_codes",
     "codes_to_bits",
+    "equation",
+    "irredundant_cover",
+    "look_up",
+    "pack_contents",
     "picture_encoder",
     "pixel_encoder",
+    "unpack_contents",
     "window_codes",
 ]

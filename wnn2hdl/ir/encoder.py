@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
+from wnn2hdl.ir.tables import pack_contents, unpack_contents
 
 CHANNELS = ("R", "G", "B")
 """Channels of a pixel, in the order of an image's last axis."""
@@ -166,15 +167,12 @@ class Tap:
     @cached_property
     def table(self) -> NDArray[np.bool_]:
         """The answer for every code of ``pixel``: bool ``[2**pixel.width]``."""
-        size = 1 << self.pixel.width
-        packed = np.frombuffer(self.contents.to_bytes(-(-size // 8), "little"), dtype=np.uint8)
-        return np.unpackbits(packed, bitorder="little")[:size].astype(np.bool_)
+        return unpack_contents(self.contents, self.pixel.width)
 
     @classmethod
     def of(cls, row: int, column: int, pixel: BitSelect, table: NDArray[np.bool_]) -> Self:
         """The tap whose answers are ``table``, bool ``[2**pixel.width]``."""
-        packed = np.packbits(table, bitorder="little").tobytes()
-        return cls(row, column, pixel, int.from_bytes(packed, "little"))
+        return cls(row, column, pixel, pack_contents(table))
 
 
 @dataclass(frozen=True)

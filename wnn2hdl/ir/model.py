@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
@@ -51,7 +52,7 @@ class WisardModel:
     mapping: NDArray[np.int64]
     counts: NDArray[np.int64]
     bleaching: int
-    training: dict[str, Any] = field(default_factory=dict)
+    training: Mapping[str, Any] = field(default_factory=dict)
     colours: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
@@ -135,7 +136,7 @@ class WisardModel:
             "bleaching": self.bleaching,
             "mapping": self.mapping.tolist(),
             "counts": [[_sparse(ram) for ram in discriminator] for discriminator in self.counts],
-            "training": self.training,
+            "training": dict(self.training),
         }
         return data if self.colours is None else data | {"colours": self.colours.tolist()}
 

@@ -1,5 +1,6 @@
 """Networks of look-up tables and dedicated multiplexers: what a table becomes once it is mapped to cells."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Self
 
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import ModelFileError
+from wnn2hdl.ir.tables import unpack_contents
 
 LUT_INPUTS = 6
 """Inputs of the 7-series LUT (Xilinx UG474)."""
@@ -17,6 +19,12 @@ restructure. Amaranth's simulator has no vendor cells; there a LUT is one look-u
 
 CONSTANTS = ("0", "1")
 """Signal names that stand for constants; an output may be tied to one."""
+
+Column = NDArray[np.uint8]
+"""The values 0 and 1 of one signal, one for each sample; or the contents of a LUT."""
+
+MUX_CONTENTS: Column = np.array([0, 1, 0, 1, 0, 0, 1, 1], dtype=np.uint8)
+"""A two-to-one multiplexer as a LUT that reads (low, high, select)."""
 
 
 @dataclass(frozen=True)
@@ -120,27 +128,37 @@ class LutNetwork:
         return max((level[signal] for _, signal in self.outputs), default=0)
 
     def evaluate(self, codes: ArrayLike) -> NDArray[np.bool_]:
-        """Outputs for codes of shape ``S``: bool ``S + (len(outputs),)``."""
+        """Outputs for codes of shape ``S``: bool ``S + (len(outputs),)``; for at most 63 inputs."""
         values = np.asarray(codes, dtype=np.int64)
-        signals: dict[str, NDArray[np.bool_]] = {
-            "0": np.zeros(values.shape, dtype=np.bool_),
-            "1": np.ones(values.shape, dtype=np.bool_),
-        }
-        for position, name in enumerate(self.inputs):
-            signals[name] = (values >> position & 1).astype(np.bool_)
+        columns = [(values.reshape(-1) >> i & 1).astype(np.uint8) for i in range(len(self.inputs))]
+        return self._outputs(columns, values.size).reshape((*values.shape, len(self.outputs)))
+
+    def evaluate_bits(self, bits: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Outputs for any number of inputs.
+
+        Args:
+            bits: bool ``[samples, len(inputs)]``, input ``i`` in column ``i``.
+
+        Returns:
+            bool ``[samples, len(outputs)]``.
+        """
+        columns = np.ascontiguousarray(bits.T).view(np.uint8)
+        return self._outputs(list(columns), len(bits))
+
+    def _outputs(self, columns: Sequence[Column], samples: int) -> NDArray[np.bool_]:
+        signals = dict(zip(self.inputs, columns, strict=True))
+        signals |= {name: np.full(samples, value, dtype=np.uint8) for value, name in enumerate(CONSTANTS)}
         for cell in self.cells:
             if isinstance(cell, Lut):
-                contents = np.array(
-                    [cell.init >> a & 1 for a in range(1 << len(cell.inputs))], dtype=np.bool_
-                )
-                address = np.zeros(values.shape, dtype=np.int64)
-                for position, name in enumerate(cell.inputs):
-                    address |= signals[name].astype(np.int64) << position
-                signals[cell.name] = contents[address]
+                contents = unpack_contents(cell.init, len(cell.inputs)).view(np.uint8)
+                pins = [signals[name] for name in cell.inputs]
             else:
-                signals[cell.name] = np.where(signals[cell.select], signals[cell.high], signals[cell.low])
-        columns = [signals[signal] for _, signal in self.outputs]
-        return np.stack(columns, axis=-1) if columns else np.zeros((*values.shape, 0), dtype=np.bool_)
+                contents, pins = MUX_CONTENTS, [signals[name] for name in (cell.low, cell.high, cell.select)]
+            signals[cell.name] = look_up(contents, pins)
+        result = np.empty((samples, len(self.outputs)), dtype=np.bool_)
+        for position, (_, signal) in enumerate(self.outputs):
+            result[:, position] = signals[signal]
+        return result
 
     def to_json(self) -> dict[str, Any]:
         """A JSON object; LUT contents are hexadecimal."""
@@ -159,6 +177,24 @@ class LutNetwork:
             return cls(tuple(data["inputs"]), cells, outputs)
         except (KeyError, TypeError, ValueError) as error:
             raise ModelFileError("not a LUT network", value=error, hint="compile the model again") from error
+
+
+def look_up(contents: Column, pins: Sequence[Column]) -> Column:
+    """What a LUT answers.
+
+    Args:
+        contents: uint8 ``[2**len(pins)]`` of 0 and 1.
+        pins: one to eight columns of 0 and 1, uint8 ``[samples]``; the first is the least significant address
+            bit.
+
+    Returns:
+        uint8 ``[samples]``.
+    """
+    address = pins[-1].copy()
+    for pin in pins[-2::-1]:
+        address <<= 1
+        address |= pin
+    return contents[address]
 
 
 def _check_contents(lut: Lut) -> None:

@@ -1,4 +1,4 @@
-"""Truth tables with don't-cares, and the two-level covers that minimise them."""
+"""Truth tables with don't-cares, and their columns as integers."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -78,49 +78,23 @@ class TruthTable:
             raise ModelFileError("not a truth table", value=error, hint="compile the model again") from error
 
 
-@dataclass(frozen=True)
-class Cube:
-    """A product term: true for the codes with ``code & mask == value``.
+def pack_contents(flags: NDArray[np.bool_] | NDArray[np.uint8]) -> int:
+    """A column of a table as an integer.
 
-    Attributes:
-        mask: bit ``i`` is set if input ``i`` is a literal of the term.
-        value: the literals' required values, a subset of ``mask``.
-        outputs: bit ``j`` is set if the term feeds output ``j``.
+    Args:
+        flags: bool or uint8 of 0 and 1, ``[2**width]``, indexed by code.
+
+    Returns:
+        The integer whose bit ``c`` is the value at code ``c``, as the contents of a LUT are written.
     """
-
-    mask: int
-    value: int
-    outputs: int
-
-    @property
-    def literals(self) -> int:
-        """How many inputs the term reads."""
-        return self.mask.bit_count()
+    return int.from_bytes(np.packbits(flags, bitorder="little").tobytes(), "little")
 
 
-@dataclass(frozen=True)
-class Cover:
-    """A sum of products: each output is the OR of the cubes that feed it."""
-
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    cubes: tuple[Cube, ...]
-
-    @property
-    def literals(self) -> int:
-        """Literals of all cubes together."""
-        return sum(cube.literals for cube in self.cubes)
-
-    def evaluate(self, codes: ArrayLike) -> NDArray[np.bool_]:
-        """Outputs for codes of shape ``S``: bool ``S + (len(outputs),)``."""
-        flat = np.asarray(codes, dtype=np.int64)
-        result = np.zeros((*flat.shape, len(self.outputs)), dtype=np.bool_)
-        for cube in self.cubes:
-            hit = (flat & cube.mask) == cube.value
-            for position in range(len(self.outputs)):
-                if cube.outputs >> position & 1:
-                    result[..., position] |= hit
-        return result
+def unpack_contents(contents: int, width: int) -> NDArray[np.bool_]:
+    """The inverse of `pack_contents`: bool ``[2**width]``."""
+    size = 1 << width
+    packed = np.frombuffer(contents.to_bytes(-(-size // 8), "little"), dtype=np.uint8)
+    return np.unpackbits(packed, count=size, bitorder="little").astype(np.bool_)
 
 
 def _to_hex(flags: NDArray[np.bool_]) -> str:

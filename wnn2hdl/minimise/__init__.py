@@ -2,7 +2,7 @@
 
 from wnn2hdl.minimise.check import require_equal
 from wnn2hdl.minimise.espresso import Minimised, espresso
-from wnn2hdl.minimise.portfolio import EFFORTS, Candidate, Mapping, map_luts, map_many
+from wnn2hdl.minimise.portfolio import EFFORTS, Candidate, Mapping, generators, map_luts
 from wnn2hdl.minimise.support import minimum_supports
 
 __all__ = [
@@ -11,8 +11,8 @@ __all__ = [
     "Mapping",
     "Minimised",
     "espresso",
+    "generators",
     "map_luts",
-    "map_many",
     "minimum_supports",
     "require_equal",
 ]

@@ -272,6 +272,7 @@ def _conflicts(on: Flags, off: Flags, bounds: tuple[tuple[int, ...], ...]) -> ND
         free = tuple(x for x in range(width) if x not in bound)
         one = _chart(on, bound, free).astype(np.float32)
         other = _chart(off, bound, free).astype(np.float32)
+        # Counts of common codes, at most 2**14: exact in any order of summation, so on any machine.
         meets = one @ other.T > 0
         result[index] = meets | meets.T
     return result

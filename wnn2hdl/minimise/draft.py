@@ -11,14 +11,24 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import CONSTANTS, LUT_INPUTS, Lut, LutNetwork, Mux, TruthTable
+from wnn2hdl.ir import (
+    CONSTANTS,
+    LUT_INPUTS,
+    MUX_CONTENTS,
+    Column,
+    Lut,
+    LutNetwork,
+    Mux,
+    TruthTable,
+    look_up,
+    pack_contents,
+)
 
 ZERO = -2
 ONE = -1
 
 Bits = NDArray[np.uint8]
-
-_MUX = np.array([0, 1, 0, 1, 0, 0, 1, 1], dtype=np.uint8)  # address bits: low, high, select
+"""Columns of several signals, uint8 ``[signals, samples]``."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +36,7 @@ class Cell:
     """A LUT: the signals it reads, least significant first, and its contents, uint8 ``[2**len(fanins)]``."""
 
     fanins: tuple[int, ...]
-    contents: Bits
+    contents: Column
 
 
 @dataclass
@@ -49,7 +59,7 @@ class Draft:
         self.cells = dict(other.cells)
         self._next = other._next
 
-    def add(self, fanins: tuple[int, ...], contents: Bits) -> int:
+    def add(self, fanins: tuple[int, ...], contents: Column) -> int:
         """A new cell's signal, or an older signal that is equal by construction."""
         cell = simplified(Cell(fanins, contents))
         if not cell.fanins:
@@ -62,7 +72,7 @@ class Draft:
 
     def add_mux(self, low: int, high: int, select: int) -> int:
         """The signal ``high if select else low``."""
-        return self.add((low, high, select), _MUX)
+        return self.add((low, high, select), MUX_CONTENTS)
 
     def order(self) -> list[int]:
         """The cells that the outputs need, each after those it reads."""
@@ -90,9 +100,9 @@ class Draft:
                 result.setdefault(signal, []).append(name)
         return result
 
-    def evaluate(self, bits: Bits) -> dict[int, Bits]:
+    def evaluate(self, bits: Bits) -> dict[int, Column]:
         """All signals for ``m`` codes, given as bits uint8 ``[width, m]``; each uint8 ``[m]``."""
-        values: dict[int, Bits] = dict(enumerate(bits))
+        values: dict[int, Column] = dict(enumerate(bits))
         values[ZERO] = np.zeros(bits.shape[1], dtype=np.uint8)
         values[ONE] = np.ones(bits.shape[1], dtype=np.uint8)
         for name in self.order():
@@ -189,19 +199,15 @@ class Draft:
                 low, high, select = (names[x] for x in muxes[number])
                 cells.append(Mux(names[number], low, high, select))
             else:
-                init = int.from_bytes(np.packbits(cell.contents, bitorder="little").tobytes(), "little")
-                cells.append(Lut(names[number], tuple(names[x] for x in cell.fanins), init))
+                fanins = tuple(names[x] for x in cell.fanins)
+                cells.append(Lut(names[number], fanins, pack_contents(cell.contents)))
         outputs = tuple(zip(table.outputs, (names[x] for x in self.outputs), strict=True))
         return LutNetwork(table.inputs, tuple(cells), outputs)
 
 
-def evaluate_cell(cell: Cell, values: dict[int, Bits]) -> Bits:
+def evaluate_cell(cell: Cell, values: dict[int, Column]) -> Column:
     """The cell's output, uint8 ``[m]``, from its fanins' values."""
-    address = values[cell.fanins[-1]].copy()
-    for signal in cell.fanins[-2::-1]:
-        address <<= 1
-        address |= values[signal]
-    return cell.contents[address]
+    return look_up(cell.contents, [values[x] for x in cell.fanins])
 
 
 def simplified(cell: Cell) -> Cell:

@@ -1,16 +1,18 @@
 """Two-level minimisation with PyEDA's espresso, and irredundant covers for tables too wide for it."""
 
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from pyeda.boolalg.espresso import DTYPE, FTYPE, RTYPE, set_config
+from pyeda.boolalg.espresso import DTYPE, FTYPE, RTYPE, get_config, set_config
 from pyeda.boolalg.espresso import espresso as _espresso
 
-from wnn2hdl.ir import Cover, Cube, TruthTable, codes_to_bits
+from wnn2hdl.ir import Cover, Cube, TruthTable, codes_to_bits, irredundant_cover, pack_contents
 from wnn2hdl.minimise.check import require_equal
 
-# The library keeps these in a global that other callers may have changed. Its improvement loop gives equal
+# The library keeps these in a global, for all who call it. Its improvement loop gives equal
 # calls different covers (measured: 4 of 15 random tables of 8 inputs), so only the first pass is used: it is
 # repeatable, found the same covers on trained tables and 2 to 6 per cent more literals on random ones.
 _CONFIG = {
@@ -20,7 +22,10 @@ _CONFIG = {
     "unwrap_onset": True,
     "recompute_onset": False,
     "use_super_gasp": False,
+    "skip_make_sparse": False,
 }
+_ONE_AT_A_TIME = threading.Lock()
+
 # Codes handed to espresso, one cube each. Measured on exact threshold functions: 1.6 s for 2**13 ON codes of
 # 14 inputs, 22 to 101 s for 2**15 of 16, where the irredundant cover took 0.1 s for the same 943 cubes.
 MAX_CODES = 1 << 14
@@ -74,8 +79,8 @@ def _espresso_cubes(table: TruthTable) -> list[Cube]:
     literals = (codes_to_bits(codes, len(table.inputs)) + np.uint8(1)).tolist()
     outputs = np.where(table.care[:, np.newaxis], table.values, 2)[codes].tolist()
     given = [(tuple(x), tuple(y)) for x, y in zip(literals, outputs, strict=True)]
-    set_config(**_CONFIG)
-    found = _espresso(len(table.inputs), len(table.outputs), given, intype=FTYPE | other)
+    with _configured():
+        found = _espresso(len(table.inputs), len(table.outputs), given, intype=FTYPE | other)
     cubes = [
         Cube(
             mask=sum(1 << x for x, literal in enumerate(inputs) if literal != 3),
@@ -87,33 +92,23 @@ def _espresso_cubes(table: TruthTable) -> list[Cube]:
     return sorted(cubes, key=lambda cube: (cube.outputs, cube.mask, cube.value))
 
 
+@contextmanager
+def _configured() -> Iterator[None]:
+    """The library with `_CONFIG`, for one thread at a time; its other users find it as they left it."""
+    with _ONE_AT_A_TIME:
+        before = get_config()
+        set_config(**_CONFIG)
+        try:
+            yield
+        finally:
+            set_config(**before)
+
+
 def _irredundant_cubes(table: TruthTable) -> list[Cube]:
-    """An irredundant sum of products for each output (Minato and Morreale), in time linear in its cubes."""
+    """An irredundant sum of products for each output."""
     cubes = []
     for position, column in enumerate(table.values.T):
-        lower, upper = _as_integer(column & table.care), _as_integer(column | ~table.care)
-        found, _ = _irredundant(lower, upper, len(table.inputs))
-        cubes += [Cube(mask, value, 1 << position) for mask, value in found]
+        lower, upper = pack_contents(column & table.care), pack_contents(column | ~table.care)
+        terms = irredundant_cover(lower, upper, len(table.inputs))
+        cubes += [Cube(mask, value, 1 << position) for mask, value in terms]
     return cubes
-
-
-def _irredundant(lower: int, upper: int, width: int) -> tuple[list[tuple[int, int]], int]:
-    """Cubes (mask, value) of a function between two bounds, and that function, bit ``c`` for code ``c``."""
-    if not lower:
-        return [], 0
-    if upper == (1 << (1 << width)) - 1:
-        return [(0, 0)], upper
-    literal, half = 1 << (width - 1), 1 << (width - 1)
-    whole = (1 << half) - 1
-    lower0, lower1, upper0, upper1 = lower & whole, lower >> half, upper & whole, upper >> half
-    cubes0, reached0 = _irredundant(lower0 & ~upper1, upper0, width - 1)
-    cubes1, reached1 = _irredundant(lower1 & ~upper0, upper1, width - 1)
-    rest = (lower0 & ~reached0) | (lower1 & ~reached1)
-    common, reached = _irredundant(rest, upper0 & upper1, width - 1)
-    cubes = [(mask | literal, value) for mask, value in cubes0]
-    cubes += [(mask | literal, value | literal) for mask, value in cubes1]
-    return cubes + common, (reached0 | reached) | (reached1 | reached) << half
-
-
-def _as_integer(flags: NDArray[np.bool_]) -> int:
-    return int.from_bytes(np.packbits(flags, bitorder="little").tobytes(), "little")

@@ -1,8 +1,9 @@
 """LUT mapping as a stage: many ways to map a table, and the best network that is proved right."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from wnn2hdl.minimise.recipes import (
     two_lut_candidates,
 )
 from wnn2hdl.minimise.support import minimum_supports
+from wnn2hdl.tools import abc_version
 
 EFFORTS = (0, 1, 2, 3)
 
@@ -60,14 +62,27 @@ class Mapping:
     Attributes:
         network: equal to the table on every cared-for code.
         method: how the winner was found.
-        seconds: wall-clock time of the whole search.
+        seconds: wall-clock time of the whole search, which two equal mappings need not share.
         candidates: all networks tried, in order.
     """
 
     network: LutNetwork
     method: str
-    seconds: float
+    seconds: float = field(compare=False)
     candidates: tuple[Candidate, ...]
+
+
+def generators() -> dict[str, str]:
+    """All outside of this package that decides what a table is minimised or mapped to, each with its version.
+
+    NumPy draws the random numbers and PyEDA's espresso makes the covers. Besides, ABC and espresso sort with
+    the C library's ``qsort``, and one of ABC's commands draws from its ``rand``: another C library may settle
+    ties another way.
+
+    Raises:
+        ToolError: ABC is missing.
+    """
+    return {"numpy": version("numpy"), "pyeda": version("pyeda"), "ABC": f"of {abc_version()}"}
 
 
 def map_luts(
@@ -75,7 +90,7 @@ def map_luts(
 ) -> Mapping:
     """Map a table to the fewest LUTs that the effort finds; then fewest levels, then fewest multiplexers.
 
-    The result depends on table and effort only.
+    The result depends on table and effort only, and on the versions of `generators`.
 
     Args:
         table: 1 to 20 inputs, any number of outputs.
@@ -86,6 +101,7 @@ def map_luts(
         InputError: there is no such effort.
         CheckError: no way led to a right network.
         ToolError: ABC is needed and missing.
+        ToolStoppedError: ABC was killed, or took an hour for one recipe.
     """
     if effort not in EFFORTS:
         raise InputError("no such effort", value=effort, hint="give 0, 1, 2 or 3")
@@ -101,7 +117,7 @@ def map_luts(
     if not search.done and effort > 1 and search.best is not None:
         if not table.care.all():
             search.offer_all(truth_candidates(_filled(table, search.best), effort - 1))
-        search.offer_all(network_candidates(search.best, effort))
+        search.offer_all(network_candidates(search.best))
     if not search.done and _MOVES[effort]:
         search.offer_all(_improved(search.leaders(), table, effort))
     if search.best is None:
@@ -109,32 +125,6 @@ def map_luts(
     network = search.best.network(table)
     require_equal(table, network, "the LUT network")
     return Mapping(network, search.method, time.perf_counter() - started, tuple(search.candidates))
-
-
-def map_many(
-    tables: Sequence[TruthTable], *, effort: int = 0, progress: Callable[[int], None] | None = None
-) -> list[LutNetwork]:
-    """Map many tables; equal tables are mapped once.
-
-    Args:
-        tables: the tables.
-        effort: as for `map_luts`.
-        progress: called with the number of tables done.
-
-    Returns:
-        A network for each table.
-    """
-    known: dict[tuple[object, ...], LutNetwork] = {}
-    networks = []
-    for count, table in enumerate(tables, 1):
-        cared = (table.values & table.care[:, np.newaxis]).tobytes()
-        key = (table.inputs, table.outputs, table.care.tobytes(), cared)
-        if key not in known:
-            known[key] = map_luts(table, effort=effort).network
-        networks.append(known[key])
-        if progress is not None:
-            progress(count)
-    return networks
 
 
 class _Search:

@@ -1,15 +1,35 @@
-"""ABC's part of the portfolio: scripts that map a table to LUTs, and the files that go in and out."""
+"""ABC's part of the portfolio: scripts that map a table to LUTs, and the files that go in and out.
 
+What comes out depends on what goes in alone, not on how fast or busy the machine is:
+
+- No command has a time limit. `&deepsyn` and `lutexact` could have one (``-T``), which is off unless asked
+  for; what bounds the work are counts of conflicts, nodes, cuts, divisors and rounds, at their defaults.
+- Commands that draw random numbers (`dch`, `scorr`, `ifraig`, `&fraig`, `&dch`, `&ttopt`, `&deepsyn`,
+  `&decpla`) seed them anew with a constant each time. Even so each recipe gets a process of its own: no
+  state that another left, and no crash of another, can reach it.
+- A recipe is asked only for functions small enough for it, counted in nodes of ABC's own network. The limit
+  on seconds is a net for the unforeseen, far beyond what was measured: whoever falls into it gets an error,
+  not another circuit.
+
+This was read in ABC's sources of August 2026 (berkeley-abc/abc 5ea3464) and measured with the yosys-abc of
+pyosys 0.70, which is a little younger and has `&decpla`.
+"""
+
+import math
+import re
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import ToolError
-from wnn2hdl.ir import LUT_INPUTS
-from wnn2hdl.minimise.draft import ONE, ZERO, Bits, Draft
+from wnn2hdl.errors import ToolError, ToolStoppedError
+from wnn2hdl.ir import LUT_INPUTS, Column, codes_to_bits, pack_contents
+from wnn2hdl.minimise.draft import ONE, ZERO, Draft
 from wnn2hdl.minimise.support import members, minimum_supports, restrict
 from wnn2hdl.tools import find_abc, run_abc
 
@@ -22,22 +42,58 @@ _SIX = "1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n"
 _POLISH = "mfs2 -a -e; lutpack"
 _REMAP = f"strash; dch -f; if -a; {_POLISH}"
 
-# From a complete truth table, already read; effort e runs the first e + 1 groups. {inputs} is their number.
+
+@dataclass(frozen=True)
+class _Recipe:
+    """One way to map a complete truth table, already read.
+
+    Attributes:
+        name: its name among the candidates.
+        script: commands of ABC; {inputs} is the number of inputs.
+        most_nodes: nodes of the function's AND-inverter graph above which it is not asked for.
+    """
+
+    name: str
+    script: str
+    most_nodes: float = math.inf
+
+
+# Measured on random functions, which are the worst (12 inputs are 3,400 nodes, 14 are 12,500, 16 are 47,000):
+# at their limit most take up to half a minute of processor time, and "deepsyn 20" some minutes.
+_LIGHT, _MEDIUM, _HEAVY = 50_000, 12_000, 2_000
+
+# Effort e runs the first e + 1 groups.
 _FROM_TRUTH = (
-    (("lutmin", "lutmin -K 6"),),
+    (_Recipe("lutmin", "lutmin -K 6"),),
     (
-        ("yosys", "read_lut yosys.lut; strash; &get -n; &fraig -x; &put; scorr; dc2; dch -f; if; mfs2"),
-        ("dch if", f"read_lut six.lut; strash; dch; if -a; {_POLISH}"),
-        ("wide if", "read_lut area.lut; strash; dch -f; if -a"),
-        ("lutmin again", f"read_lut six.lut; lutmin -K 6; {_POLISH}; {_REMAP}"),
-        ("ttopt", f"read_lut six.lut; strash; &get -n; &ttopt -I {{inputs}} -O 1; &put; {_REMAP}"),
+        _Recipe(
+            "yosys",
+            "read_lut yosys.lut; strash; &get -n; &fraig -x; &put; scorr; dc2; dch -f; if; mfs2",
+            _LIGHT,
+        ),
+        _Recipe("dch if", f"read_lut six.lut; strash; dch; if -a; {_POLISH}", _LIGHT),
+        _Recipe("wide if", "read_lut area.lut; strash; dch -f; if -a", _LIGHT),
+        _Recipe("lutmin again", f"read_lut six.lut; lutmin -K 6; {_POLISH}; {_REMAP}", _LIGHT),
+        _Recipe(
+            "ttopt", f"read_lut six.lut; strash; &get -n; &ttopt -I {{inputs}} -O 1; &put; {_REMAP}", _LIGHT
+        ),
     ),
     (
-        ("fx", f"read_lut six.lut; collapse; sop; fx; {_REMAP}; {_REMAP}"),
-        ("compress", f"read_lut six.lut; strash; dc2; dc2; ifraig; {_REMAP}; {_REMAP}"),
-        ("deepsyn", f"read_lut six.lut; strash; &get -n; &deepsyn -I 1 -J 3; &put; {_REMAP}; {_REMAP}"),
+        _Recipe("fx", f"read_lut six.lut; collapse; sop; fx; {_REMAP}; {_REMAP}", _MEDIUM),
+        _Recipe("compress", f"read_lut six.lut; strash; dc2; dc2; ifraig; {_REMAP}; {_REMAP}", _MEDIUM),
+        _Recipe(
+            "deepsyn",
+            f"read_lut six.lut; strash; &get -n; &deepsyn -I 1 -J 3; &put; {_REMAP}; {_REMAP}",
+            _HEAVY,
+        ),
     ),
-    (("deepsyn 20", f"read_lut six.lut; strash; &get -n; &deepsyn -I 2 -J 20; &put; {_REMAP}; {_REMAP}"),),
+    (
+        _Recipe(
+            "deepsyn 20",
+            f"read_lut six.lut; strash; &get -n; &deepsyn -I 2 -J 20; &put; {_REMAP}; {_REMAP}",
+            _HEAVY,
+        ),
+    ),
 )
 # From the cared-for codes themselves: bi-decomposition, with as many attempts.
 _FROM_CARE = ((), (1,), (1, 8), (1, 8, 30))
@@ -48,10 +104,11 @@ _FROM_NETWORK = (
 )
 # Inputs that two LUTs can read between them, one pin being the wire that joins them.
 _MAX_TWO_LUT_INPUTS = 2 * LUT_INPUTS - 1
-# Seconds; a script that hangs loses its candidates, nothing else.
-_TIME_LIMITS = (10.0, 30.0, 60.0, 300.0)
-# Codes above which the text of the care set costs more than it gains.
+# Codes above which the text of the care set costs more than it gains: at the limit one attempt takes 7 s.
 _MAX_PLA_ROWS = 1 << 14
+# Seconds that no recipe comes near to; an error, never another result.
+_SAFETY_NET = 3600.0
+_NODES = re.compile(r"\band = *(\d+)")
 
 
 def truth_candidates(truth: NDArray[np.bool_], effort: int) -> Iterator[tuple[str, Draft]]:
@@ -60,13 +117,16 @@ def truth_candidates(truth: NDArray[np.bool_], effort: int) -> Iterator[tuple[st
     The networks are right only as far as ABC is; the caller checks them.
     """
     width = truth.shape[0].bit_length() - 1
-    files = {"f.truth": "".join("".join("01"[int(x)] for x in column[::-1]) + "\n" for column in truth.T)}
-    recipes = [
-        (name, f"read_truth -xf f.truth; {script.format(inputs=width)}")
-        for level in _FROM_TRUTH[: effort + 1]
-        for name, script in level
+    files = {"f.truth": "".join(_digits(column[::-1]) + "\n" for column in truth.T)}
+    read = "read_truth -xf f.truth"
+    recipes = [recipe for level in _FROM_TRUTH[: effort + 1] for recipe in level]
+    nodes = _nodes(read, files) if effort else 0
+    scripts = [
+        (recipe.name, f"{read}; {recipe.script.format(inputs=width)}")
+        for recipe in recipes
+        if nodes <= recipe.most_nodes
     ]
-    yield from _run(recipes, files, width, effort)
+    yield from _run(scripts, files, width)
 
 
 def care_candidates(
@@ -77,22 +137,20 @@ def care_candidates(
     if len(codes) > _MAX_PLA_ROWS or not _FROM_CARE[effort]:
         return
     width = len(care).bit_length() - 1
-    rows = [
-        "".join("01"[code >> x & 1] for x in range(width)) + " " + "".join("01"[int(x)] for x in values[code])
-        for code in codes.tolist()
-    ]
+    bits = codes_to_bits(codes, width)
+    rows = [f"{_digits(code)} {_digits(wanted)}" for code, wanted in zip(bits, values[codes], strict=True)]
     pla = f".i {width}\n.o {values.shape[1]}\n.type fr\n" + "\n".join(rows) + "\n.e\n"
-    recipes = [
+    scripts = [
         (f"decpla {attempts}", f"read_lut six.lut; &decpla -K {attempts} f.pla; &put; {_REMAP}")
         for attempts in _FROM_CARE[effort]
     ]
-    yield from _run(recipes, {"f.pla": pla}, width, effort)
+    yield from _run(scripts, {"f.pla": pla}, width)
 
 
-def network_candidates(draft: Draft, effort: int) -> Iterator[tuple[str, Draft]]:
+def network_candidates(draft: Draft) -> Iterator[tuple[str, Draft]]:
     """Networks equal to the draft on all codes, made from it."""
-    recipes = [(name, f"read_blif f.blif; {script}") for name, script in _FROM_NETWORK]
-    yield from _run(recipes, {"f.blif": to_blif(draft)}, draft.width, effort)
+    scripts = [(name, f"read_blif f.blif; {script}") for name, script in _FROM_NETWORK]
+    yield from _run(scripts, {"f.blif": to_blif(draft)}, draft.width)
 
 
 def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
@@ -102,18 +160,17 @@ def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
     0.2 s, whatever the function. Of 8-input functions made of two LUTs that share three inputs it maps 10 of
     10, which the rest of the portfolio maps to four; of 30 tables of 8 and 9 inputs with don't-cares, filled
     by the best network, it maps none better. Three LUTs take from 0.1 s to more than 10 s at eight inputs,
-    and only a time limit could end that, which would let the result depend on the machine; so three are not
-    asked for.
+    and `lutexact` counts no conflicts that could end that; so three are not asked for.
     """
     support = members(minimum_supports(truth, ~truth)[0])
     width = len(support)
     if not LUT_INPUTS < width <= _MAX_TWO_LUT_INPUTS:
         return
     column = restrict(truth, sum(1 << x for x in support))
-    digits = np.packbits(column, bitorder="little")[::-1].tobytes().hex()
+    digits = f"{pack_contents(column):0{len(column) // 4}x}"
     # ABC names the file after the first 16 digits; if there is no solution, there is no file to read.
     script = f"lutexact -d -N {width} -M 2 -K {LUT_INPUTS} {digits}; read_blif {digits[:16]}_.blif"
-    for method, small in _run([("lutexact", script)], {}, width, 0):
+    for method, small in _run([("lutexact", script)], {}, width):
         draft = Draft(truth.shape[0].bit_length() - 1)
         signals = dict(enumerate(support))
         for number in small.order():
@@ -124,26 +181,45 @@ def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
 
 
 def _run(
-    recipes: Sequence[tuple[str, str]], files: dict[str, str], width: int, effort: int
+    scripts: Sequence[tuple[str, str]], files: dict[str, str], width: int
 ) -> Iterator[tuple[str, Draft]]:
+    """What each script makes of the files, one process each, started when it is asked for."""
     find_abc()  # a missing ABC is the user's to know; a recipe that fails is not
+    with _folder(files) as folder:
+        for number, (method, script) in enumerate(scripts):
+            result = folder / f"{number}.blif"
+            try:
+                run_abc(f"{script}; write_blif {result.name}", cwd=folder, timeout=_SAFETY_NET)
+            except ToolStoppedError:
+                raise
+            except ToolError:
+                continue  # ABC refuses some functions, and asserts on others
+            yield method, from_blif(result.read_text(encoding="ascii"), width)
+
+
+def _nodes(script: str, files: dict[str, str]) -> int:
+    """Nodes of the AND-inverter graph of what a script reads, as ABC makes it before any recipe."""
+    with _folder(files) as folder:
+        output = run_abc(f"{script}; strash; print_stats", cwd=folder, timeout=_SAFETY_NET)
+    found = _NODES.search(output)
+    if found is None:
+        raise ToolError("yosys-abc tells no number of nodes", output=output)
+    return int(found[1])
+
+
+@contextmanager
+def _folder(files: dict[str, str]) -> Iterator[Path]:
+    """A temporary folder with these files and the LUT libraries."""
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
         for file, text in {**files, "six.lut": _SIX, "area.lut": _AREA, "yosys.lut": _YOSYS_AREA}.items():
             (folder / file).write_text(text, encoding="ascii")
-        pending = list(enumerate(recipes))
-        while pending:
-            script = "\n".join(f"{recipe}; write_blif {index}.blif" for index, (_, recipe) in pending)
-            try:
-                run_abc(script, cwd=folder, timeout=_TIME_LIMITS[effort])
-                failed = len(recipes)
-            except ToolError:
-                # ABC asserts on some functions and then ends: go on behind the recipe that did it.
-                failed = next(x for x, _ in pending if not (folder / f"{x}.blif").exists())
-            for index, (method, _) in pending:
-                if index < failed and (folder / f"{index}.blif").exists():
-                    yield method, from_blif((folder / f"{index}.blif").read_text(encoding="ascii"), width)
-            pending = [(x, recipe) for x, recipe in pending if x > failed]
+        yield folder
+
+
+def _digits(flags: NDArray[np.bool_] | Column) -> str:
+    """``0110`` for four flags, the first one first."""
+    return (flags.astype(np.uint8) + ord("0")).tobytes().decode("ascii")
 
 
 def to_blif(draft: Draft) -> str:
@@ -161,11 +237,8 @@ def to_blif(draft: Draft) -> str:
         cell = draft.cells[number]
         names[number] = f"c{number}"
         lines.append(".names " + " ".join(names[x] for x in (*cell.fanins, number)))
-        places = range(len(cell.fanins))
-        lines += [
-            "".join("01"[address >> x & 1] for x in places) + " 1"
-            for address in np.flatnonzero(cell.contents).tolist()
-        ]
+        addresses = codes_to_bits(np.flatnonzero(cell.contents), len(cell.fanins))
+        lines += [f"{_digits(address)} 1" for address in addresses]
     lines += [f".names {names[signal]} o{position}\n1 1" for position, signal in enumerate(draft.outputs)]
     return "\n".join([*lines, ".end", ""])
 
@@ -191,29 +264,15 @@ def from_blif(text: str, width: int) -> Draft:
         elif not words[0].startswith("."):
             cubes.append(line)
     signals = {name: position for position, name in enumerate(inputs)}
-    for name in _sorted_names(tables, outputs):
+    order = TopologicalSorter({name: fanins for name, (fanins, _) in tables.items()}).static_order()
+    for name in (name for name in order if name in tables):
         fanins, rows = tables[name]
         signals[name] = _add_wide(draft, tuple(signals[x] for x in fanins), _contents(len(fanins), rows))
     draft.outputs = [signals[name] for name in outputs]
     return draft
 
 
-def _sorted_names(tables: dict[str, tuple[list[str], list[str]]], outputs: list[str]) -> list[str]:
-    done: dict[str, None] = {}
-    stack = list(reversed(outputs))
-    while stack:
-        name = stack[-1]
-        missing = [x for x in tables[name][0] if x in tables and x not in done] if name in tables else []
-        if missing:
-            stack += missing
-        else:
-            stack.pop()
-            if name in tables:
-                done[name] = None
-    return list(done)
-
-
-def _contents(width: int, rows: list[str]) -> Bits:
+def _contents(width: int, rows: list[str]) -> Column:
     codes = np.arange(1 << width)
     hit = np.zeros(1 << width, dtype=np.bool_)
     value = 1
@@ -226,7 +285,7 @@ def _contents(width: int, rows: list[str]) -> Bits:
     return (hit if value else ~hit).astype(np.uint8)
 
 
-def _add_wide(draft: Draft, fanins: tuple[int, ...], contents: Bits) -> int:
+def _add_wide(draft: Draft, fanins: tuple[int, ...], contents: Column) -> int:
     if len(fanins) <= LUT_INPUTS:
         return draft.add(fanins, contents)
     low, high = (_add_wide(draft, fanins[:-1], half) for half in np.split(contents, 2))

@@ -1,12 +1,8 @@
 """What a LUT computes, for a person to read: contents, expression, and a table of at most eight by eight."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from wnn2hdl.ir import Lut
-
-Literals = tuple[tuple[int, bool], ...]
-"""A product term: pairs (input, value it must have)."""
+from wnn2hdl.ir import Lut, equation
 
 
 @dataclass(frozen=True)
@@ -52,61 +48,5 @@ def grid(lut: Lut) -> Grid:
 
 
 def expression(lut: Lut) -> str:
-    """The function in Verilog's operators: the shortest of a sum of products, one inverted, and an XOR."""
-    size = 1 << len(lut.inputs)
-    full = (1 << size) - 1
-    if lut.init in (0, full):
-        return "1" if lut.init else "0"
-    candidates = [_sum(lut.init, lut.inputs)]
-    inverted = _sum(lut.init ^ full, lut.inputs)
-    candidates.append(f"~({inverted})" if " " in inverted else f"~{inverted}")
-    parity = _parity(lut)
-    if parity:
-        candidates.append(parity)
-    return min(candidates, key=len)
-
-
-def _sum(init: int, names: Sequence[str]) -> str:
-    terms, _ = _irredundant(init, init, len(names))
-    texts = [
-        " & ".join(names[position] if value else f"~{names[position]}" for position, value in sorted(term))
-        for term in terms
-    ]
-    alone = len(texts) == 1
-    return " | ".join(f"({text})" if " " in text and not alone else text for text in texts)
-
-
-def _irredundant(lower: int, upper: int, inputs: int) -> tuple[list[Literals], int]:
-    """Product terms that cover `lower` within `upper`, none of them to spare, and what they cover.
-
-    S. Minato, "Fast generation of irredundant sum-of-products forms from binary decision diagrams", SASIMI
-    1992; here on truth tables as integers.
-    """
-    if lower == 0:
-        return [], 0
-    if upper == (1 << (1 << inputs)) - 1:
-        return [()], upper
-    half = 1 << (inputs - 1)
-    mask, top = (1 << half) - 1, inputs - 1
-    (low0, low1), (up0, up1) = ((x & mask, x >> half) for x in (lower, upper))
-    terms0, done0 = _irredundant(low0 & ~up1, up0, top)
-    terms1, done1 = _irredundant(low1 & ~up0, up1, top)
-    both, done = _irredundant(low0 & ~done0 | low1 & ~done1, up0 & up1, top)
-    terms = [(*term, (top, False)) for term in terms0] + [(*term, (top, True)) for term in terms1] + both
-    return terms, (done1 | done) << half | done0 | done
-
-
-def _parity(lut: Lut) -> str | None:
-    """The function as an XOR of inputs, perhaps inverted; None if it is none."""
-    first = lut.init & 1
-    read = [i for i in range(len(lut.inputs)) if (lut.init >> (1 << i) & 1) != first]
-    mask = sum(1 << i for i in read)
-    if any(
-        (lut.init >> address & 1) != first ^ ((address & mask).bit_count() & 1)
-        for address in range(1 << len(lut.inputs))
-    ):
-        return None
-    text = " ^ ".join(lut.inputs[i] for i in read)
-    if not first:
-        return text
-    return f"~({text})" if len(read) > 1 else f"~{text}"
+    """The function in Verilog's operators, over the names of the LUT's inputs."""
+    return equation(lut.init, len(lut.inputs)).text(lut.inputs)

@@ -4,7 +4,7 @@ Each program is found, started with a time limit, and its output is scanned for 
 status 0. A failure is a `wnn2hdl.errors.ToolError` that carries the command and what it printed.
 """
 
-from wnn2hdl.tools.abc import find_abc, run_abc
+from wnn2hdl.tools.abc import abc_version, find_abc, run_abc
 from wnn2hdl.tools.runner import Completed, in_parallel, run
 from wnn2hdl.tools.simulators import (
     Simulator,
@@ -21,6 +21,7 @@ __all__ = [
     "Completed",
     "Simulator",
     "Yosys",
+    "abc_version",
     "find_abc",
     "find_icarus",
     "find_verilator",

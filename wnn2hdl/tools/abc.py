@@ -34,6 +34,22 @@ def find_abc() -> Path:
     return Path(binary)
 
 
+@functools.cache
+def abc_version() -> str:
+    """What tells this ABC from others: the Yosys that it came with, ``pyosys 0.70``, or when it was compiled.
+
+    Every ABC of the last ten years calls itself 1.01.
+
+    Raises:
+        ToolError: there is no ABC.
+    """
+    yosys = find_yosys()
+    if yosys.abc_path is not None:
+        return f"{yosys.name} {yosys.version.partition(' ')[0]}"
+    compiled = re.search(r"compiled [^)]+", run_abc("version", timeout=30))
+    return compiled.group() if compiled else "unknown"
+
+
 def run_abc(script: str, *, timeout: float, cwd: Path | None = None) -> str:
     """Run a script of ABC commands, one a line or parted by semicolons, in a new process.
 

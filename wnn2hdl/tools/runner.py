@@ -14,7 +14,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
-from wnn2hdl.errors import ToolError
+from wnn2hdl.errors import ToolError, ToolStoppedError
+
+_FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+"""Signals that a program does not send itself; it aborts or faults by others."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -59,9 +62,9 @@ def run(
             exit status.
 
     Raises:
-        ToolError: the binary cannot be started, the time is up, the exit status is not one of `ok_statuses`,
-            or a line of the output matches `error_line`. Its value is the line that tells why, where there is
-            one.
+        ToolStoppedError: the time is up, or someone killed the program, as a system without memory does.
+        ToolError: the binary cannot be started, the exit status is not one of `ok_statuses`, or a line of the
+            output matches `error_line`. Its value is the line that tells why, where there is one.
     """
     line = shlex.join(str(word) for word in command)
     binary = Path(command[0]).name
@@ -91,7 +94,7 @@ def run(
             batch.add(process)
         output, _ = process.communicate(stdin, timeout=timeout)
     except subprocess.TimeoutExpired:
-        raise ToolError(
+        raise ToolStoppedError(
             f"{binary} did not finish in {timeout:g} s",
             hint="allow it more time or give it less to do",
             command=line,
@@ -106,7 +109,8 @@ def run(
     found = _first_match(error_line, output)
     if found is not None or process.returncode not in ok_statuses:
         lines = output.strip().splitlines()
-        raise ToolError(
+        kind = ToolStoppedError if -process.returncode in _FROM_OUTSIDE else ToolError
+        raise kind(
             f"{binary} {_ending(process.returncode)}",
             value=found or (lines[-1] if lines else "it printed nothing"),
             command=line,
@@ -162,7 +166,7 @@ class _Batch:
     def add(self, process: "subprocess.Popen[str]") -> None:
         with self.lock:
             if self.closed:
-                raise ToolError("stopped, since the work around it has ended")
+                raise ToolStoppedError("stopped, since the work around it has ended")
             self.processes.add(process)
 
     def remove(self, process: "subprocess.Popen[str]") -> None:

@@ -154,7 +154,7 @@ def _run_script(
     except ToolError as error:
         # The process is called python3; the user knows it as a Yosys.
         fault = error.fault.replace(Path(command[0]).name, name, 1)
-        raise ToolError(
+        raise type(error)(
             fault, value=error.value, hint=error.hint, command=error.command, output=error.output
         ) from error
     log, end, _ = output.rpartition(f"\n{_END}\n")

@@ -1,7 +1,7 @@
 """Training that knows the cost: each method with its LUTs a pixel and its accuracy on unseen images."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -80,15 +80,7 @@ def train_under_budget(
         )
     best = max(fitting, key=lambda point: (point.accuracy, -point.luts))
     figures = {"luts": best.luts, "cross_validated_accuracy": best.accuracy, "images": list(dataset.names)}
-    model = best.model
-    return WisardModel(
-        model.encoder,
-        model.classes,
-        model.mapping,
-        model.counts,
-        model.bleaching,
-        model.training | figures,
-    )
+    return replace(best.model, training={**best.model.training, **figures})
 
 
 def measure(
@@ -247,4 +239,4 @@ def circuit_model(model: WisardModel, network: LutNetwork, training: dict[str, f
     # Outside of the care set a circuit of several outputs may name a class that does not exist.
     answers = np.minimum(bits_to_codes(network.evaluate(codes)), len(model.classes) - 1)
     encoder = BitSelect(tuple(model.encoder.names[x] for x in kept))
-    return look_up_table(encoder, model.classes, answers, model.training | training)
+    return look_up_table(encoder, model.classes, answers, {**model.training, **training})

@@ -1,5 +1,7 @@
 """Training of models that look at a pixel's neighbours."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,8 +53,7 @@ def train_neighbourhood(
         seed=seed,
         progress=lambda done, total: progress("choosing tables", done, total),
     )
-    model.training["images"] = list(dataset.names)
-    return model
+    return replace(model, training={**model.training, "images": list(dataset.names)})
 
 
 def _draw(

@@ -5,11 +5,12 @@ from typing import Any
 
 import pytest
 
-from wnn2hdl.apps.sweep import PixelSets, answers_digest, draw
+from wnn2hdl.apps.sweep import PixelSets, draw
 from wnn2hdl.apps.sweep import run_sweep as real_sweep
-from wnn2hdl.apps.sweep.trial import run_trials
+from wnn2hdl.apps.sweep.trial import answers_digest, run_trials
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.lower.table import pixel_table
 
 Run = Callable[..., Any]
 
@@ -58,7 +59,7 @@ def test_best_writes_the_model_of_the_best_trial_of_the_chosen_architecture(run:
     assert status == 0
     best = json.loads(Path("out/summary.json").read_text())["best"]
     assert json.loads(out)["name"] == best["name"]
-    assert answers_digest(WisardModel.load(Path("m.json"))) == best["answers"]
+    assert answers_digest(pixel_table(WisardModel.load(Path("m.json")))) == best["answers"]
 
 
 def test_any_trial_is_rebuilt_without_a_sweep(run: Run) -> None:
@@ -66,7 +67,7 @@ def test_any_trial_is_rebuilt_without_a_sweep(run: Run) -> None:
     assert status == 0
     model = WisardModel.load(Path("m.json"))
     assert (model.address_bits, model.rams) == (4, 16)
-    assert answers_digest(model) == json.loads(out)["answers"]
+    assert answers_digest(pixel_table(model)) == json.loads(out)["answers"]
     assert not Path("build").exists()
 
 

@@ -1,14 +1,12 @@
 """Colours counted by class."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, colour_histogram, training_histogram
-from wnn2hdl.errors import InputError
+from wnn2hdl.dataset import LabelledImage, colour_histogram
 
 
 def image(pixels: NDArray[np.uint8], labels: list[int]) -> LabelledImage:
@@ -39,32 +37,3 @@ def test_a_histogram_holds_every_pixel(pixels: NDArray[np.uint8], seed: int) -> 
         for _ in range(count)
     )
     assert rebuilt == listed
-
-
-def test_the_histogram_of_a_set_is_that_of_all_its_pixels_together() -> None:
-    rng = np.random.default_rng(0)
-    images = {
-        name: LabelledImage(
-            name,
-            rng.integers(0, 4, (50, 3), dtype=np.uint8),
-            rng.integers(0, 2, 50, dtype=np.uint8),
-        )
-        for name in "abc"
-    }
-    joined = LabelledImage(
-        "all",
-        np.concatenate([part.pixels for part in images.values()]),
-        np.concatenate([part.labels for part in images.values()]),
-    )
-    total, expected = (
-        training_histogram(Dataset(CLASSES, tuple(images), images.__getitem__)),
-        colour_histogram(joined, 2),
-    )
-    assert np.array_equal(total.colours, expected.colours)
-    assert np.array_equal(total.counts, expected.counts)
-
-
-def test_a_class_without_a_pixel_is_named() -> None:
-    forest = image(np.zeros((2, 3), dtype=np.uint8), [0, 0])
-    with pytest.raises(InputError, match="no training pixel is labelled deforested: 1 images; add images"):
-        training_histogram(Dataset(CLASSES, ("a",), lambda _: forest))

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wnn2hdl.errors import ModelFileError
-from wnn2hdl.ir import Lut, LutNetwork, Mux
+from wnn2hdl.ir import Lut, LutNetwork, Mux, bits_to_codes
 
 
 def adder() -> LutNetwork:
@@ -79,6 +79,26 @@ def test_a_full_adder_adds() -> None:
 def test_evaluation_follows_the_definition(network: LutNetwork) -> None:
     codes = np.arange(1 << len(network.inputs))
     assert network.evaluate(codes).tolist() == [slow_value(network, code) for code in codes.tolist()]
+
+
+@given(networks(), st.integers(0, 20), st.integers(0, 99))
+def test_bits_are_evaluated_as_their_codes_are(network: LutNetwork, samples: int, seed: int) -> None:
+    bits = np.random.default_rng(seed).random((samples, len(network.inputs))) < 0.5
+    assert network.evaluate_bits(bits).tolist() == network.evaluate(bits_to_codes(bits)).tolist()
+
+
+def test_a_network_may_be_wider_than_any_code() -> None:
+    inputs = tuple(f"i{x}" for x in range(100))
+    network = LutNetwork(inputs, (Lut("n", ("i3", "i99"), 0b0110),), (("y", "n"), ("one", "1")))
+    bits = np.zeros((3, 100), dtype=np.bool_)
+    bits[1, 3] = bits[2, [3, 99]] = True
+    assert network.evaluate_bits(bits).tolist() == [[False, True], [True, True], [False, True]]
+
+
+@pytest.mark.parametrize("shape", [(), (3,), (2, 3), (0,)])
+def test_codes_have_any_shape(shape: tuple[int, ...]) -> None:
+    codes = np.arange(np.prod(shape, dtype=int)).reshape(shape)
+    assert adder().evaluate(codes).shape == (*shape, 5)
 
 
 @given(networks())

@@ -1,9 +1,11 @@
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pyeda.boolalg.espresso import get_config, set_config
 
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Cube, TruthTable
@@ -69,6 +71,27 @@ def test_the_same_table_gives_the_same_cover() -> None:
     for seed in range(10):
         table = random_table(8, 2, 0.5, seed)
         assert minimise(table) == minimise(table)
+
+
+def test_the_library_s_options_are_neither_used_nor_changed() -> None:
+    table = random_table(8, 2, 0.5, 0)
+    cover = minimise(table).cover
+    before = get_config()
+    try:
+        set_config(**{name: not value for name, value in before.items()})
+        foreign = get_config()
+        assert minimise(table).cover == cover
+        assert get_config() == foreign
+    finally:
+        set_config(**before)
+
+
+def test_threads_do_not_see_each_other_s_options() -> None:
+    tables = [random_table(7, 2, 0.5, seed) for seed in range(8)]
+    before = get_config()
+    with ThreadPoolExecutor(8) as pool:
+        assert list(pool.map(minimise, tables)) == [minimise(table) for table in tables]
+    assert get_config() == before
 
 
 def test_a_wrong_cover_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.ir import TruthTable
-from wnn2hdl.minimise import map_luts, map_many, portfolio
+from wnn2hdl.minimise import map_luts, portfolio
 from wnn2hdl.minimise.draft import ONE, Draft
 
 
@@ -131,15 +131,6 @@ def test_progress_tells_each_improvement() -> None:
     told: list[tuple[str, int]] = []
     mapping = map_luts(random_table(8, 1, 0.5, 0), effort=1, progress=lambda *x: told.append(x))
     assert told[-1] == (mapping.method, len(mapping.network.luts))
-
-
-def test_many_tables_are_mapped_and_equal_ones_once() -> None:
-    tables = [random_table(8, 1, 0.1, seed % 5) for seed in range(20)]
-    told: list[int] = []
-    networks = map_many(tables, progress=told.append)
-    assert all(is_right(table, network) for table, network in zip(tables, networks, strict=True))
-    assert networks[0] is networks[5]
-    assert told == list(range(1, 21))
 
 
 def test_an_unknown_effort_is_refused() -> None:

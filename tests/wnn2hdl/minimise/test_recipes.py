@@ -1,7 +1,9 @@
+import math
+
 import numpy as np
 import pytest
 
-from wnn2hdl.errors import ToolError
+from wnn2hdl.errors import ToolError, ToolStoppedError
 from wnn2hdl.minimise import recipes
 from wnn2hdl.minimise.decompose import decompose
 from wnn2hdl.minimise.draft import Draft
@@ -47,7 +49,7 @@ def test_networks_go_to_abc_and_back(truth: np.ndarray) -> None:
     everything = tuple(range(WIDTH))
     draft.outputs = [decompose(draft, everything, x, ~x, rng) for x in truth.T]
     assert (values_of(from_blif(to_blif(draft), WIDTH)) == truth).all()
-    assert all((values_of(found) == truth).all() for _, found in network_candidates(draft, effort=2))
+    assert all((values_of(found) == truth).all() for _, found in network_candidates(draft))
 
 
 @pytest.mark.parametrize(
@@ -81,8 +83,37 @@ def test_nothing_is_found_where_two_luts_are_too_few_or_too_many(width: int) -> 
 def test_a_recipe_that_crashes_costs_only_itself(truth: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
     # A malformed truth table makes ABC end with a segmentation fault.
     scripts = (("first", "lutmin -K 6"), ("crash", "read_truth 12345"), ("last", "lutmin -K 6"))
-    monkeypatch.setattr(recipes, "_FROM_TRUTH", (scripts,))
+    monkeypatch.setattr(recipes, "_FROM_TRUTH", (tuple(recipes._Recipe(*x) for x in scripts),))
     assert [name for name, _ in truth_candidates(truth, effort=0)] == ["first", "last"]
+
+
+def test_a_recipe_s_network_does_not_depend_on_the_others(
+    truth: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    together = {name: to_blif(draft) for name, draft in truth_candidates(truth, effort=2)}
+    every = [recipe for level in recipes._FROM_TRUTH[:3] for recipe in level]
+    for recipe in every:
+        monkeypatch.setattr(recipes, "_FROM_TRUTH", ((recipe,),))
+        ((name, draft),) = truth_candidates(truth, effort=0)
+        assert to_blif(draft) == together[name]
+
+
+def test_a_function_too_large_for_a_recipe_is_not_given_to_it(
+    truth: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Two random functions of eight inputs, 1 at three codes of ten, are 297 nodes.
+    limits = {"any": math.inf, "too small": 250, "large enough": 350}
+    group = tuple(recipes._Recipe(name, "lutmin -K 6", limit) for name, limit in limits.items())
+    monkeypatch.setattr(recipes, "_FROM_TRUTH", ((), group))
+    assert [name for name, _ in truth_candidates(truth, effort=1)] == ["any", "large enough"]
+
+
+def test_a_recipe_that_takes_too_long_is_an_error_and_no_other_result(
+    truth: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recipes, "_SAFETY_NET", 0.001)
+    with pytest.raises(ToolStoppedError, match=r"yosys-abc did not finish in 0\.001 s"):
+        list(truth_candidates(truth, effort=0))
 
 
 def test_a_missing_abc_is_told(truth: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:

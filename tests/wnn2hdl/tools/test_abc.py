@@ -1,15 +1,29 @@
 """The real ABC, which tells of errors on status 0."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from wnn2hdl.errors import ToolError
-from wnn2hdl.tools import find_abc, run_abc
+from wnn2hdl.tools import abc, abc_version, find_abc, find_yosys, run_abc
 
 
 def test_it_is_the_one_that_comes_with_yosys() -> None:
     assert find_abc().name == "yosys-abc"
+
+
+def test_it_is_told_by_the_yosys_it_came_with() -> None:
+    yosys = find_yosys()
+    assert abc_version() == f"{yosys.name} {yosys.version.split()[0]}"
+
+
+def test_one_that_came_alone_is_told_by_its_date(monkeypatch: pytest.MonkeyPatch) -> None:
+    alone = replace(find_yosys(), abc_path=None)
+    binary = find_abc()
+    monkeypatch.setattr(abc, "find_yosys", lambda: alone)
+    monkeypatch.setattr(abc, "find_abc", lambda: binary)
+    assert abc_version.__wrapped__().startswith("compiled ")
 
 
 def test_a_truth_table_becomes_luts(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from wnn2hdl.errors import ToolError
+from wnn2hdl.errors import ToolError, ToolStoppedError
 from wnn2hdl.tools import in_parallel, run
 
 # A shell that starts a grandchild, tells its number and waits for it.
@@ -52,6 +52,15 @@ def test_standard_input_folder_and_environment_reach_the_program(tmp_path: Path)
 
 def test_without_input_a_program_that_reads_ends() -> None:
     assert run(["cat"], timeout=10).output == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "stopped"), [("KILL", True), ("TERM", True), ("ABRT", False), ("SEGV", False)]
+)
+def test_a_program_that_was_killed_is_told_from_one_that_crashed(name: str, stopped: bool) -> None:
+    with pytest.raises(ToolError, match=f"^sh was killed by SIG{name}") as caught:
+        run(["sh", "-c", f"kill -{name} $$"], timeout=10)
+    assert isinstance(caught.value, ToolStoppedError) == stopped
 
 
 def test_a_missing_binary_is_named() -> None:

@@ -6,7 +6,7 @@ from wnn2hdl.apps.sweep.local import run_locally
 from wnn2hdl.apps.sweep.page import present
 from wnn2hdl.apps.sweep.pixels import TRAINING_PIXELS, PixelSets, draw, seen_colours
 from wnn2hdl.apps.sweep.study import Outcome, discard_another, find_trial, run_sweep
-from wnn2hdl.apps.sweep.trial import Record, answers_digest, rebuild, run_trial
+from wnn2hdl.apps.sweep.trial import Record, rebuild, run_trial
 
 __all__ = [
     "TRAINING_PIXELS",
@@ -16,7 +16,6 @@ __all__ = [
     "Recipe",
     "Record",
     "Trial",
-    "answers_digest",
     "discard_another",
     "draw",
     "find_trial",

@@ -134,11 +134,6 @@ def table_and_network(sets: PixelSets, trial: Trial) -> tuple[TruthTable, LutNet
     return table, map_luts(table, effort=EFFORT).network
 
 
-def answers_digest(model: WisardModel) -> str:
-    """A digest of the model's answer to every code, 16 hexadecimal digits."""
-    return _digest(pixel_table(model).values)
-
-
 def _run(sets: PixelSets, trial: Trial) -> Record:
     counts = code_counts(sets, trial.bits)
     model = rebuild(sets, trial)
@@ -162,7 +157,7 @@ def _run(sets: PixelSets, trial: Trial) -> Record:
         luts=circuit.luts,
         muxes=circuit.muxes,
         levels=circuit.levels,
-        answers=_digest(answers.values),
+        answers=answers_digest(answers),
     )
 
 
@@ -181,8 +176,9 @@ def _accuracy(counts: CodeCounts, values: NDArray[np.bool_]) -> float:
     return int(counts.held_out[answers[exists], exists].sum()) / int(counts.held_out.sum())
 
 
-def _digest(values: NDArray[np.bool_]) -> str:
-    return hashlib.blake2b(np.packbits(values).tobytes(), digest_size=8).hexdigest()
+def answers_digest(answers: TruthTable) -> str:
+    """A digest of the answers to every code, as `pixel_table` gives them: 16 hexadecimal digits."""
+    return hashlib.blake2b(np.packbits(answers.values).tobytes(), digest_size=8).hexdigest()
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from wnn2hdl.apps.sweep import trial as trials
 from wnn2hdl.apps.sweep.grid import Plan, Recipe
 from wnn2hdl.apps.sweep.pixels import PixelSets, code_counts
 from wnn2hdl.apps.sweep.trial import Record, answers_digest, rebuild, run_trial, table_and_network
+from wnn2hdl.lower.table import pixel_table
 from wnn2hdl.wisard import PixelClassifier
 
 
@@ -20,7 +21,7 @@ def test_a_record_holds_what_the_rebuilt_model_and_circuit_do(sets: PixelSets, r
     assert record.status == "valid"
     assert record.accuracy == right / held_out.sum()
     assert record.bleaching == model.bleaching
-    assert record.answers == answers_digest(model)
+    assert record.answers == answers_digest(pixel_table(model))
     assert 0.5 < right / held_out.sum() <= 1
 
     table, network = table_and_network(sets, trial)
