@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 from amaranth.hdl import Cat, Const, Instance, Module, Mux, Signal, Value
 
-from hdl_templates.boolean import equation
+from hdl_templates.boolean import expression
 from hdl_templates.hierarchy import Emission
 from wnn2hdl.ir import CONSTANTS, Lut, LutNetwork, Style
 from wnn2hdl.ir import Mux as MuxCell
+from wnn2hdl.ir.equation import equation
 
 KEEP = {"a_DONT_TOUCH": "yes"}
 """Attribute that keeps Vivado from merging or restructuring a cell (Xilinx UG901)."""
@@ -54,7 +55,7 @@ def draw_network(
         if style == "cells":
             m.submodules[f"{prefix}{cell.name}_cell"] = _instance(cell, pins, output, muxes)
         elif isinstance(cell, Lut):
-            m.d.comb += output.eq(equation(cell.init, len(pins)).expression(pins))
+            m.d.comb += output.eq(expression(equation(cell.init, len(pins)), pins))
         else:
             low, high, select = pins
             m.d.comb += output.eq(Mux(select, high, low))

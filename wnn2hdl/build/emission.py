@@ -9,13 +9,11 @@ from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
 from wnn2hdl.emit import CELLS_FILE, cells_model, testbench, vectors, verilog
 from wnn2hdl.files import write_text
+from wnn2hdl.minimise.portfolio import generators as minimisers
 from wnn2hdl.tools import find_yosys
 
 SOBEL = "sobel"
 """Name of the baseline, as that of a part."""
-
-PACKAGES = ("wnn2hdl", "amaranth", "numpy", "pyeda")
-"""The packages whose versions decide the bytes of the Verilog; Yosys, which brings ABC, does so too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +55,8 @@ class Files:
 def generators() -> dict[str, str]:
     """The versions of all that decides the bytes of the Verilog."""
     yosys = find_yosys()
-    return {**{name: version(name) for name in PACKAGES}, yosys.name: yosys.version}
+    packages = {name: version(name) for name in ("wnn2hdl", "amaranth")}
+    return {**packages, **minimisers(), yosys.name: yosys.version}
 
 
 def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:

@@ -55,6 +55,8 @@ class Table:
 
     def evaluate(self, values: tuple[Bits, ...]) -> dict[str, Bits]:
         """The nets that the node drives, from the values of the words that it reads."""
+        if isinstance(self.function, LutNetwork):
+            return {self.name: self.function.evaluate_bits(values[0])}
         return {self.name: self.function.evaluate(bits_to_codes(values[0]))}
 
 

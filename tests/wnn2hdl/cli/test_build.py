@@ -35,7 +35,7 @@ def test_a_circuit_that_is_too_large_is_written_and_fails(run: Run, file: Path, 
     done = run("compile", file, "--target", "pixel", "-o", tmp_path / "build", "--max-luts", 0)
     assert done.status == 1
     assert "the pixel takes more LUTs than allowed: " in done.stderr.splitlines()[-1]
-    assert (tmp_path / "build" / "pixel.v").is_file()
+    assert (tmp_path / "build" / "build.v").is_file()
 
 
 def test_bad_usage_is_one_line_and_leaves_nothing(run: Run, file: Path, tmp_path: Path) -> None:

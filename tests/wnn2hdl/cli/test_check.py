@@ -66,4 +66,4 @@ def test_what_is_no_build_is_refused(run: Run, pixel_build: Path, picture: Path,
     for words in (("verify", tmp_path), ("synth", tmp_path), ("simulate", tmp_path, "--image", picture)):
         assert "not a build folder" in run(*words).complaint()
     only = run("simulate", pixel_build, "--image", picture).complaint()
-    assert "only a block or a neighbourhood runs over a picture" in only
+    assert "only a circuit that reads a window runs over a picture" in only

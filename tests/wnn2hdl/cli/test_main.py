@@ -82,7 +82,7 @@ def test_ctrl_c_in_the_middle_leaves_nothing(tmp_path: Path) -> None:
         text=True,
         env={"PATH": "/usr/bin:/bin", "WNN2HDL_CACHE": str(tmp_path / "cache"), "HOME": str(tmp_path)},
     )
-    while not list(tmp_path.glob(".build.*/block.v")):
+    while not list(tmp_path.glob(".build.*/build.v")):
         assert running.poll() is None, running.stderr
         time.sleep(0.05)
     time.sleep(1)

@@ -137,7 +137,7 @@ def test_a_part_of_several_networks_shows_them_all(
     several = {"tap0": networks["edge"], "decision": networks["pixel"]}
     page = build_page(report | {"target": "neighbourhood", "utilisation": {}}, several)
     assert "Schematic of tap0" in page
-    assert "Schematic of combiner" in page
+    assert "Schematic of decision" in page
     assert "LUTs of the neighbourhood" in page
     assert "Edge patterns" not in page
 
@@ -157,7 +157,7 @@ def test_a_neighbourhood_shows_which_pixels_it_looks_at(
     ]
     assert "tap0: row 0, column 2; 1 LUT<" in page
     assert "tap1: row 1, column 1; 1 LUT<" in page
-    assert "combiner: 2 LUTs, 1 multiplexer<" in page
+    assert "decision: 2 LUTs, 1 multiplexer<" in page
     assert "classified pixel" not in build_page(report, networks)
 
 
