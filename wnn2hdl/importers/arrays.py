@@ -44,15 +44,12 @@ class PickledArray(Saved):
 
     def set_state(self, state: object) -> None:
         """Take version, shape, type, whether columns come first, and bytes."""
-        _, shape, kind, columns_first, content = state  # type: ignore[misc]  # a wrong length is reported
-        if (
-            not isinstance(kind, PickledType)
-            or not isinstance(content, bytes)
-            or not isinstance(shape, tuple)
-        ):
-            raise UnreadablePickleError("a NumPy array is damaged")
-        flat = np.frombuffer(content, dtype=kind.dtype)
-        self.array = flat.reshape(shape, order="F" if columns_first else "C")
+        match state:
+            case (_, tuple() as shape, PickledType() as kind, columns_first, bytes() as content):
+                flat = np.frombuffer(content, dtype=kind.dtype)
+                self.array = flat.reshape(shape, order="F" if columns_first else "C")
+            case _:
+                raise UnreadablePickleError("a NumPy array is damaged")
 
 
 def _scalar(kind: Any, content: bytes) -> NDArray[Any]:

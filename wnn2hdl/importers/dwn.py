@@ -179,7 +179,7 @@ def _mapping(state: dict[str, Any], layer: str, nodes: int, inputs: int) -> NDAr
             raise ValueError(
                 f"{layer}.mapping.weights has shape {weights.shape}; there are {nodes * inputs} slots"
             )
-        return weights.argmax(axis=0).astype(np.int32).reshape(nodes, inputs)
+        return np.asarray(weights.argmax(axis=0), dtype=np.int32).reshape(nodes, inputs)
     mapping = array_of(state[f"{layer}.mapping"], f"{layer}.mapping")
     if mapping.shape != (nodes, inputs) or mapping.dtype.kind not in "iu":
         raise ValueError(

@@ -124,7 +124,7 @@ def test_real_numbers_have_no_levels() -> None:
 def test_words_come_bit_by_bit_the_lowest_first() -> None:
     assert Words(2, 3).bits([[6, 1]]).tolist() == [[False, True, True, True, False, False]]
     assert Words(2, 3).names == ("x0_b0", "x0_b1", "x0_b2", "x1_b0", "x1_b1", "x1_b2")
-    assert Words(2).bits([[True, False], [0, 1]]).tolist() == [[True, False], [False, True]]
+    assert Words(2).bits(np.array([[True, False], [False, True]])).tolist() == [[True, False], [False, True]]
     assert Words(2).names == ("x0", "x1")
 
 

@@ -46,9 +46,11 @@ class SumLayer:
             raise ValueError(f"the values have shape {self.values.shape}; it must be [edges, power of two]")
         if not self.sources.shape == self.targets.shape == (len(self.values),):
             raise ValueError("every edge needs a source, a target and values")
-        if self.targets.size and not 0 <= self.targets[0] <= self.targets[-1] < self.nodes:
+        if self.targets.size and not 0 <= self.targets.min() <= self.targets.max() < self.nodes:
             raise ValueError(f"an edge ends at a node that there is not; there are {self.nodes}")
-        if (np.diff(self.targets) < 0).any() or self.sources.min(initial=0) < 0:
+        if self.sources.min(initial=0) < 0:
+            raise ValueError("an edge reads a word before the first")
+        if (np.diff(self.targets) < 0).any():
             raise ValueError("the edges are not in the order of their targets")
 
     @property
