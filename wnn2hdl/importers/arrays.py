@@ -75,6 +75,7 @@ NUMPY: dict[str, StandIn] = {
             for name, make in (("_reconstruct", lambda *_: PickledArray()), ("scalar", _scalar))
         ),
         StandIn("_codecs.encode", _encoded),
+        StandIn("__builtin__.bytes", lambda: b""),
     )
 }
 """What a pickle needs to hold NumPy arrays."""

@@ -9,6 +9,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import read_json
 from wnn2hdl.ir.models import ClassifierModel, LogicModel
@@ -114,3 +117,10 @@ def damage_reported(source: Source, what: str) -> Iterator[None]:
         raise InputError(
             f"not {what}, or a damaged one", value=f"{source.path} ({reason[:200]})", hint="export it again"
         ) from error
+
+
+def whole_numbers(values: object, what: str) -> NDArray[np.int64]:
+    """A list of whole numbers, not empty, as int64 ``[numbers]``; raises ValueError for anything else."""
+    if not isinstance(values, list) or not values or not all(type(value) is int for value in values):
+        raise ValueError(f"{what} is no list of whole numbers")
+    return np.array(values, dtype=np.int64)

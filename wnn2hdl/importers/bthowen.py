@@ -37,14 +37,18 @@ def read(source: Source, _: ImportOptions) -> BloomWisardModel:
         info, model = data["info"], data["model"]
         width = int(info["num_inputs"]) * int(info["bits_per_input"])
         inputs, entries = int(info["num_filter_inputs"]), int(info["num_filter_entries"])
-        if width < 1 or inputs < 1 or not 2 <= entries <= MAX_PICKLE_BYTES:
+        discriminators = model.state["discriminators"]
+        if len(discriminators) != info["num_classes"]:
+            raise ValueError(
+                f"there are {len(discriminators)} discriminators for {info['num_classes']} classes"
+            )
+        if width < 1 or inputs < 1 or entries < 2:
             raise ValueError("its sizes are those of no model")
         mapping = _mapping(model, width, inputs)
+        if len(discriminators) * len(mapping) * entries > MAX_PICKLE_BYTES:
+            raise ValueError("it says it has more entries than there can be in the file")
         hashes = _hashes(array_of(info["hash_values"], "hash_values"), entries)
-        discriminators = model.state["discriminators"]
         contents = np.stack([_contents(each, len(mapping), entries, hashes) for each in discriminators])
-        if len(contents) != info["num_classes"]:
-            raise ValueError(f"there are {len(contents)} discriminators for {info['num_classes']} classes")
         return BloomWisardModel(
             encoder=Words(width),
             classes=tuple(str(index) for index in range(len(contents))),

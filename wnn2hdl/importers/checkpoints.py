@@ -3,7 +3,7 @@
 import io
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -74,10 +74,11 @@ class _Storage:
 
 @dataclass(frozen=True)
 class _Archive:
-    """The archive, and the folder in it that holds everything."""
+    """The archive, the folder in it that holds everything, and storages that were read already."""
 
     archive: zipfile.ZipFile
     folder: str
+    storages: dict[tuple[str, str], _Storage] = field(default_factory=dict)
 
     def read(self, name: str) -> bytes:
         """A file of the archive.
@@ -112,10 +113,18 @@ class _Archive:
         name = STORAGES.get(kind.name.removeprefix("torch."))
         if name is None:
             raise UnreadablePickleError(f"it holds numbers of a kind that is not known, {kind.name[:40]}")
+        if (name, key) not in self.storages:
+            self.storages[name, key] = self._read_storage(name, key)
+        found = self.storages[name, key]
+        if len(found.content) != numbers:
+            raise UnreadablePickleError(
+                f"storage {key[:20]} holds {len(found.content)} numbers, not {numbers}"
+            )
+        return found
+
+    def _read_storage(self, name: str, key: str) -> _Storage:
         dtype = np.dtype(self._order() + ("u2" if name == "bf16" else name))
         content = np.frombuffer(self.read(f"data/{key}"), dtype=dtype)
-        if len(content) != numbers:
-            raise UnreadablePickleError(f"storage {key[:20]} holds {len(content)} numbers, not {numbers}")
         if name == "bf16":
             content = (content.astype(np.uint32) << 16).view(np.float32)
         return _Storage(content)
@@ -130,7 +139,7 @@ class _Archive:
 
 
 def _tensor(storage: Any, offset: Any, shape: Any, strides: Any, *_: Any) -> NDArray[Any]:
-    """The view of a storage that a tensor is, copied in the usual order."""
+    """The view of a storage that a tensor is; a copy of each could fill the memory."""
     whole = isinstance(shape, tuple) and isinstance(strides, tuple)
     if not whole or not all(type(n) is int and n >= 0 for n in (offset, *shape, *strides)):
         raise UnreadablePickleError("a tensor is damaged")
@@ -144,10 +153,9 @@ def _tensor(storage: Any, offset: Any, shape: Any, strides: Any, *_: Any) -> NDA
     if size > len(content):
         raise UnreadablePickleError("a tensor repeats its storage")
     if not size:
-        return np.empty(shape, dtype=content.dtype.newbyteorder("="))
+        return np.empty(shape, dtype=content.dtype)
     step = content.dtype.itemsize
-    view = np.lib.stride_tricks.as_strided(content[offset:], shape, [step * stride for stride in strides])
-    return view.astype(content.dtype.newbyteorder("="))
+    return np.lib.stride_tricks.as_strided(content[offset:], shape, [step * stride for stride in strides])
 
 
 def _parameter(data: Any, *_: Any) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import read_json
-from wnn2hdl.importers.base import Importer, ImportOptions, Source, damage_reported
+from wnn2hdl.importers.base import Importer, ImportOptions, Source, damage_reported, whole_numbers
 from wnn2hdl.ir.features import Words
 from wnn2hdl.ir.models import SumLayer, TableSumModel
 
@@ -84,8 +84,8 @@ def _layer(tables: dict[str, Any], index: int, nodes: tuple[int, int], bits: tup
     ]
     values = np.empty((len(found), 1 << bits[0]), dtype=np.int32)
     for row, (source, target, listed) in enumerate(found):
-        exact = np.array(listed)
-        if exact.shape != (1 << bits[0],) or exact.dtype.kind != "i":
+        exact = whole_numbers(listed, "an edge's values")
+        if exact.shape != (1 << bits[0],):
             raise ValueError(f"edge {index}_{source}_{target} does not hold {1 << bits[0]} whole numbers")
         if np.abs(exact).max() >> 31:
             raise ValueError(f"edge {index}_{source}_{target} holds a value beyond 32 bits")

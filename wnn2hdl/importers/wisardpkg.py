@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.importers.base import Importer, ImportOptions, Source, damage_reported
+from wnn2hdl.importers.base import Importer, ImportOptions, Source, damage_reported, whole_numbers
 from wnn2hdl.ir.features import Words
 from wnn2hdl.ir.models import Dynamic, SparseWisardModel
 from wnn2hdl.ir.models.base import ZERO
@@ -15,6 +15,9 @@ from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 
 RECORD = np.dtype([("address", "<u8"), ("count", "<i4")])
 """A stored address in a RAM's data."""
+
+MAX_SLOTS = 1 << 26
+"""Address bits of all RAMs together."""
 
 DATA_SUFFIX = ".wdpkg"
 """Of the files that hold a class's RAMs where the JSON does not."""
@@ -38,9 +41,9 @@ def read(source: Source, options: ImportOptions) -> SparseWisardModel:
             raise InputError("the model reads digits, not bits", value=f"{source.path} (base {data['base']})")
         labels = sorted(data["classes"], key=lambda label: label.encode())
         discriminators = [data["classes"][label] for label in labels]
-        widths = {discriminator["entrySize"] for discriminator in discriminators}
-        if len(widths) != 1:
-            raise ValueError(f"classes read inputs of {sorted(widths)} bits")
+        widths = whole_numbers([each["entrySize"] for each in discriminators], "entrySize")
+        if len(set(widths.tolist())) != 1:
+            raise ValueError(f"classes read inputs of {widths.min()} to {widths.max()} bits")
         contents = [_contents(source, each, bool(data["ignoreZero"])) for each in discriminators]
         mapping = _mapping([each["mapping"] for each in discriminators])
         rams = mapping.shape[1]
@@ -56,7 +59,7 @@ def read(source: Source, options: ImportOptions) -> SparseWisardModel:
             encoder="the file holds none: the model reads bits",
         )
         return SparseWisardModel(
-            encoder=Words(widths.pop()),
+            encoder=Words(int(widths[0])),
             classes=tuple(labels),
             mapping=mapping,
             offsets=np.cumsum([0, *map(len, stored)], dtype=np.int64),
@@ -80,12 +83,15 @@ def _mapping(lists: list[list[list[int]]]) -> NDArray[np.int32]:
     bits = max(len(inputs) for owner in lists for inputs in owner)
     if bits > MAX_ADDRESS_BITS:
         raise ValueError(f"a RAM has {bits} address bits; there are at most {MAX_ADDRESS_BITS}")
+    if len(lists) * rams * bits > MAX_SLOTS:
+        raise ValueError(f"{len(lists)} classes of up to {rams} RAMs are too many")
     mapping = np.full((len(lists), rams, bits), ZERO, dtype=np.int32)
     for index, owner in enumerate(lists):
         for ram, inputs in enumerate(owner):
-            if min(inputs) < 0:
-                raise ValueError(f"a RAM reads input {min(inputs)}")
-            mapping[index, ram, : len(inputs)] = inputs
+            numbers = whole_numbers(inputs, "a RAM's mapping")
+            if numbers.min() < 0:
+                raise ValueError(f"a RAM reads input {numbers.min()}")
+            mapping[index, ram, : len(inputs)] = numbers
     same = all(np.array_equal(owner, mapping[0]) for owner in mapping)
     return mapping[:1] if same else mapping
 
