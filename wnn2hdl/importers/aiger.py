@@ -135,8 +135,10 @@ def _in_order(
     """Gates as of `LogicModel`, and the new number of each old variable, -1 for one that is not defined."""
     gate_of = np.full(variables + 1, -1, dtype=np.int64)
     gate_of[owners] = np.arange(len(owners))
-    others = [[gate for gate in pair if gate >= 0] for pair in gate_of[reads >> 1].tolist()]
-    order = in_order(others)
+    others = gate_of[reads >> 1]
+    order = np.arange(len(owners))
+    if (others >= order[:, np.newaxis]).any():  # few files have their gates in another order
+        order = np.array(in_order([[gate for gate in pair if gate >= 0] for pair in others.tolist()]))
     renamed = np.full(variables + 1, -1, dtype=np.int64)
     renamed[0] = 0
     renamed[inputs] = 1 + np.arange(len(inputs))

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -35,7 +36,7 @@ REFUSED = {
 }
 
 
-@dataclass
+@dataclass(slots=True)
 class _Node:
     """A ``.names``: the signals that it reads, and the lines of its cover."""
 
@@ -113,7 +114,7 @@ def _parse(source: Source, text: str) -> _Network:
         if not directive.startswith("."):
             if node is None:
                 raise ValueError(f"{directive[:40]!r} is neither a directive nor a line of a cover")
-            node.rows.append(_row(words, len(node.inputs)))
+            node.rows.append(_row(tuple(words), len(node.inputs)))
             continue
         node = None
         if directive in REFUSED:
@@ -138,7 +139,8 @@ def _parse(source: Source, text: str) -> _Network:
     return network
 
 
-def _row(words: list[str], inputs: int) -> tuple[str, str]:
+@lru_cache(maxsize=1024)
+def _row(words: tuple[str, ...], inputs: int) -> tuple[str, str]:
     """A line of a cover: what each input must be, and the answer."""
     cube, answer = (words[0], words[1]) if len(words) == 2 else ("", words[0])
     if len(words) > 2 or len(cube) != inputs or cube.strip("01-") or answer not in ("0", "1"):
@@ -152,13 +154,17 @@ def _literal(builder: GateBuilder, node: _Node, signals: dict[str, int]) -> int:
     if len(answers) > 1:
         raise ValueError("a cover lists both where it is 1 and where it is 0")
     inputs = [signals[name] for name in node.inputs]
-    cubes = (
-        builder.every(
-            literal ^ (wanted == "0") for literal, wanted in zip(inputs, cube, strict=True) if wanted != "-"
-        )
+    cubes = [
+        builder.every([inputs[place] ^ inverted for place, inverted in _literals(cube)])
         for cube, _ in node.rows
-    )
+    ]
     return builder.any(cubes) ^ (answers == {"0"})
+
+
+@lru_cache(maxsize=1024)
+def _literals(cube: str) -> list[tuple[int, int]]:
+    """Which inputs a line of a cover reads, and whether inverted."""
+    return [(place, int(wanted == "0")) for place, wanted in enumerate(cube) if wanted != "-"]
 
 
 IMPORTER = Importer("blif", "a network in BLIF", recognises, read)

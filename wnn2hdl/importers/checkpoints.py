@@ -171,6 +171,7 @@ _TENSORS: dict[str, StandIn] = {
         StandIn("torch.torch_version.TorchVersion", lambda text: str(text)),
         StandIn("torch.Size", lambda sizes: tuple(sizes)),
         StandIn("torch.device", lambda *_: None),
+        StandIn("__builtin__.set", lambda *_: None),  # names of buffers that are not saved
         *(StandIn(f"torch.{name}", lambda *_: None) for name in STORAGES),
     )
 }

@@ -28,8 +28,9 @@ def named_classes(monkeypatch: pytest.MonkeyPatch) -> Classes:
         for name in names:
             module, _, own = name.rpartition(".")
             made[name] = type(own, (), {"__module__": module})
-            if module not in sys.modules:
-                monkeypatch.setitem(sys.modules, module, ModuleType(module))
+            for end in [index for index, letter in enumerate(f"{module}.") if letter == "."]:
+                if module[:end] not in sys.modules:
+                    monkeypatch.setitem(sys.modules, module[:end], ModuleType(module[:end]))
             monkeypatch.setattr(sys.modules[module], own, made[name], raising=False)
         return made
 

@@ -67,7 +67,7 @@ def upstream(features: Any) -> list[int]:
     for luts, mapping in zip(LUTS, (WEIGHTS.argmax(0).reshape(3, 2), SECOND), strict=True):
         address = (bits[:, mapping] * [1, 2]).sum(axis=2)
         bits = luts[np.arange(len(luts)), address] > 0
-    return bits.reshape(-1, 2, 2).sum(axis=2).argmax(axis=1).tolist()
+    return list(map(int, bits.reshape(-1, 2, 2).sum(axis=2).argmax(axis=1)))
 
 
 FEATURES = np.array([[a, b] for a in (0.25, 0.3, 1.0, 1.5) for b in (0.5, 0.6, 2.0, 3.0)])

@@ -13,7 +13,7 @@ def table(builder: GateBuilder, literal: int, inputs: int) -> list[bool]:
     """Answers of a literal for all inputs, the first input the slowest."""
     names = tuple(f"i{index}" for index in range(inputs))
     model = LogicModel(names, ("o",), builder.array(), np.array([literal], dtype=np.uint32))
-    return model.evaluate(list(product([False, True], repeat=inputs)))[:, 0].tolist()
+    return list(map(bool, model.evaluate(list(product([False, True], repeat=inputs)))[:, 0]))
 
 
 @given(st.lists(st.integers(0, 7), max_size=6))
