@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.importers import Importer, ImportOptions, formats, import_model, known_formats
+from wnn2hdl.importers import Importer, ImportOptions, Source, formats, import_model, known_formats
 from wnn2hdl.ir.models import LogicModel
 
 NOT = ".model not\n.inputs a\n.outputs y\n.names a y\n0 1\n.end\n"
@@ -49,7 +49,7 @@ def install(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], None]]:
 def test_a_format_is_recognised_by_content_alone(tmp_path: Path, content: bytes, name: str) -> None:
     path = tmp_path / "model.bin"
     path.write_bytes(content)
-    recognised = [each.name for each in known_formats().values() if each.recognises(formats.Source(path))]
+    recognised = [each.name for each in known_formats().values() if each.recognises(Source(path))]
     assert recognised == [name]
 
 
