@@ -1,4 +1,4 @@
-"""`evaluate`: how good a model or a circuit is on labelled or tagged pictures."""
+"""`evaluate`: how good a model or a circuit is on labelled or tagged pictures, or on tables."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -29,6 +29,7 @@ from wnn2hdl.cli.options import (
 )
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.dataset import Dataset, from_samples
+from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import Evaluation, SquareVote, evaluate, majority_labels
 from wnn2hdl.evaluation.classifiers import PictureClassifier
@@ -41,7 +42,9 @@ from wnn2hdl.evaluation.measures import (
     interval,
     kappa,
     mean_iou,
+    wilson,
 )
+from wnn2hdl.evaluation.rows import load_vector_classifier, row_confusion
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
 from wnn2hdl.lower.targets import TARGETS
@@ -58,6 +61,13 @@ MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 @palette_option
 @click.option("--chips", type=folder, help="Folder of pictures tagged as a whole; needs --tags.")
 @click.option("--tags", type=file, help="CSV of the chips' tags: image_name,tags.")
+@click.option("--table", type=file, help="CSV of feature vectors; needs --label.")
+@click.option("--label", help="Column of the table that names the class.")
+@click.option(
+    "--raw/--scaled",
+    default=None,
+    help="Whether the table's features still have to be scaled as the model notes, or are.",
+)
 @click.option(
     "--square",
     type=click.IntRange(1, MAX_SIDE),
@@ -73,6 +83,9 @@ def evaluate_command(
     palette: Path | None,
     chips: Path | None,
     tags: Path | None,
+    table: Path | None,
+    label: str | None,
+    raw: bool | None,
     square: int | None,
     share: float,
     seed: int,
@@ -82,8 +95,9 @@ def evaluate_command(
 
     On pictures with masks, or the embedded landscapes if none are given: accuracy, kappa, mean intersection
     over union, and each class's precision, recall, F1 and IoU. On pictures with tags: how well the share
-    called deforested tells cleared land from forest. Intervals are bootstrapped over images. A figure that
-    is undefined (0/0) is null.
+    called deforested tells cleared land from forest. Intervals are bootstrapped over images. On a table of
+    feature vectors: the same measures, and Wilson's interval of the accuracy. A figure that is undefined
+    (0/0) is null.
 
     \b
     Examples:
@@ -91,7 +105,16 @@ def evaluate_command(
       wnn2hdl evaluate model.json --images images --masks masks
       wnn2hdl evaluate build/mine --images images --masks masks --square 20 --json
       wnn2hdl evaluate model.json --chips chips --tags labels.csv
+      wnn2hdl evaluate model.json --table data.csv --label class
     """
+    if table is not None or label is not None:
+        if table is None or label is None:
+            raise InputError("these options go together", value="--table and --label", hint="give both")
+        if images or masks or palette or chips or tags or square:
+            raise InputError("a table has no pictures", hint="leave the options of pictures out")
+        data, text = _with_table(model, table, label, raw)
+        emit({"classifier": str(model), **data}, text, as_json=as_json)
+        return
     parts, mode = _parts(model)
     head = {"classifier": str(model), **mode}
     with progress() as report:
@@ -167,7 +190,9 @@ def _with_masks(
         "classes": list(dataset.classes),
         **found,
     }
-    return data, "\n".join(_lines(name, figures, len(dataset)) for name, figures in found.items())
+    return data, "\n".join(
+        _lines(f"{name}, {len(dataset)} images", figures) for name, figures in found.items()
+    )
 
 
 def _overall(result: Evaluation, seed: int) -> dict[str, Any]:
@@ -186,6 +211,22 @@ def _figures(confusion: NDArray[np.int64], classes: tuple[str, ...]) -> dict[str
         },
         "confusion": confusion.tolist(),
     }
+
+
+def _with_table(model: Path, table: Path, label: str, raw: bool | None) -> tuple[dict[str, Any], str]:
+    classifier = load_vector_classifier(model)
+    rows = read_table(table, label)
+    confusion = row_confusion(classifier, rows, raw)
+    figures = _figures(confusion, classifier.classes)
+    figures["intervals"] = {"accuracy": wilson(confusion), "kappa": None, "mean_iou": None}
+    data = {
+        "accuracy": figures["accuracy"],
+        "samples": len(rows.labels),
+        "classes": list(classifier.classes),
+        "model": figures,
+        "interval": {"method": "Wilson score", "confidence": CONFIDENCE},
+    }
+    return data, _lines(f"model, {len(rows.labels)} samples", figures)
 
 
 def _with_tags(
@@ -219,8 +260,8 @@ def _with_tags(
     return data, "\n".join([*lines, RULE])
 
 
-def _lines(name: str, figures: dict[str, Any], images: int) -> str:
-    lines = [f"{name}, {images} images: {_sentence(figures)}"]
+def _lines(heading: str, figures: dict[str, Any]) -> str:
+    lines = [f"{heading}: {_sentence(figures)}"]
     table = Table("class", "precision", "recall", "F1", "IoU")
     for label, scores in figures["per_class"].items():
         table.add_row(label, *(_figure(score) for score in scores.values()))

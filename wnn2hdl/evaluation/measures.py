@@ -109,6 +109,21 @@ def interval(confusions: NDArray[np.int64], measure: Measure, seed: int) -> tupl
     return None if low is None or high is None else (low, high)
 
 
+def wilson(confusion: NDArray[np.int64]) -> tuple[float, float]:
+    """An interval that holds the accuracy with the probability `CONFIDENCE`, were other samples drawn.
+
+    Wilson's score interval; samples are taken for independent, which pixels of an image are not.
+
+    Args:
+        confusion: ``[classes, classes]``, of at least one sample.
+    """
+    from scipy.stats import binomtest
+
+    test = binomtest(int(_hits(confusion).sum()), int(confusion.sum()))
+    found = test.proportion_ci(confidence_level=CONFIDENCE, method="wilson")
+    return float(found.low), float(found.high)
+
+
 def defined(figure: float | NDArray[np.float64]) -> float | None:
     """A figure, or None for one that is undefined."""
     return None if np.isnan(figure) else float(figure)

@@ -12,9 +12,9 @@ from wnn2hdl.ir.encoder import (
     Neighbourhood,
     PictureEncoder,
     Tap,
-    Thermometer,
 )
 from wnn2hdl.ir.equation import Equation, equation
+from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
 from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
 from wnn2hdl.ir.network import (
     CONSTANTS,
@@ -49,6 +49,8 @@ __all__ = [
     "EdgeFilter",
     "Encoder",
     "Equation",
+    "FeatureEncoder",
+    "FixedPoint",
     "Lut",
     "LutNetwork",
     "Mux",
@@ -60,6 +62,7 @@ __all__ = [
     "Thermometer",
     "TruthTable",
     "WisardModel",
+    "Words",
     "bits_to_codes",
     "codes_to_bits",
     "equation",

@@ -1,14 +1,14 @@
-"""Encoders: how a pixel or a feature vector becomes the bits that a network reads."""
+"""Encoders of pictures: how a pixel, or a pixel and its neighbours, becomes the bits that a network reads."""
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
+from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
 from wnn2hdl.ir.tables import pack_contents, unpack_contents
 
 CHANNELS = ("R", "G", "B")
@@ -93,53 +93,6 @@ class BitSelect:
     def to_json(self) -> dict[str, Any]:
         """A JSON object, read back by `encoder_from_json`."""
         return {"kind": self.kind, "bits": list(self.bits)}
-
-
-@dataclass(frozen=True)
-class Thermometer:
-    """Each feature compared with its own rising thresholds.
-
-    Attributes:
-        thresholds: per feature, its thresholds in rising order. Bit ``t`` of a feature is
-            ``x >= thresholds[t]``; bits are feature-major: all of feature 0, then all of feature 1.
-    """
-
-    kind: ClassVar[str] = "thermometer"
-    thresholds: tuple[tuple[float, ...], ...]
-
-    def __post_init__(self) -> None:
-        for feature, levels in enumerate(self.thresholds):
-            if not all(np.isfinite(levels)) or any(a >= b for a, b in pairwise(levels)):
-                raise ValueError(f"the thresholds of feature {feature} do not rise: {levels}")
-        if self.width == 0:
-            raise ValueError("a thermometer needs at least one threshold")
-
-    @property
-    def width(self) -> int:
-        """Bits of a code."""
-        return sum(len(levels) for levels in self.thresholds)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Name of each code bit: ``x3_t0`` is feature 3 against its first threshold."""
-        return tuple(f"x{f}_t{t}" for f, levels in enumerate(self.thresholds) for t in range(len(levels)))
-
-    def bits(self, features: ArrayLike) -> NDArray[np.bool_]:
-        """Bits of feature vectors.
-
-        Args:
-            features: numbers, ``[samples, features]``.
-
-        Returns:
-            bool ``[samples, width]``.
-        """
-        array = np.asarray(features, dtype=np.float64)
-        columns = [array[:, f, np.newaxis] >= np.asarray(t) for f, t in enumerate(self.thresholds)]
-        return np.concatenate(columns, axis=1)
-
-    def to_json(self) -> dict[str, Any]:
-        """A JSON object, read back by `encoder_from_json`."""
-        return {"kind": self.kind, "thresholds": [list(levels) for levels in self.thresholds]}
 
 
 @dataclass(frozen=True)
@@ -246,10 +199,10 @@ class Neighbourhood:
         return {"kind": self.kind, "size": self.size, "taps": taps}
 
 
-Encoder = BitSelect | Neighbourhood | Thermometer
-
 PictureEncoder = BitSelect | Neighbourhood
 """What makes codes of pictures; its ``halo`` tells how many pixels at a picture's rim have none."""
+
+Encoder = PictureEncoder | FeatureEncoder
 
 
 def encoder_from_json(data: dict[str, Any]) -> Encoder:
@@ -266,7 +219,11 @@ def encoder_from_json(data: dict[str, Any]) -> Encoder:
             for tap in data["taps"]
         )
         return Neighbourhood(data["size"], tuple(taps))
-    return Thermometer(tuple(tuple(float(x) for x in levels) for levels in data["thresholds"]))
+    if data["kind"] == Words.kind:
+        return Words(data["features"], data["word_bits"])
+    thresholds = tuple(tuple(float(x) for x in levels) for levels in data["thresholds"])
+    words = FixedPoint.from_json(data["input"]) if "input" in data else None
+    return Thermometer(thresholds, data["strict"], words)
 
 
 PIXEL_BIT_NAMES = {

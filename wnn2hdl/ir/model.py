@@ -1,26 +1,18 @@
 """The trained network: RAM discriminators, their mapping, their counts and the bleaching threshold."""
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
-import jsonschema
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
-from wnn2hdl.files import read_json, write_json
+from wnn2hdl.files import write_json
 from wnn2hdl.ir.codes import bits_to_codes, codes_to_bits
 from wnn2hdl.ir.encoder import BitSelect, Encoder, PictureEncoder, encoder_from_json
-
-FORMAT = "wnn2hdl-model"
-VERSION = 1
-
+from wnn2hdl.ir.modelfile import answers_digest, contradicting, header, read_model_file
 
 COMMAND = "command"
 """Key in `WisardModel.training` of the command line that trained the model, all but its ``-o``."""
@@ -47,6 +39,7 @@ class WisardModel:
             known. They decide no answer, but tell imagery of the kind that was trained on from foreign one.
     """
 
+    kind: ClassVar[str] = "wisard"
     encoder: Encoder
     classes: tuple[str, ...]
     mapping: NDArray[np.int64]
@@ -119,16 +112,12 @@ class WisardModel:
 
     def digest(self) -> str:
         """SHA-256 of all that decides the model's answers (not of `training` and `colours`), hexadecimal."""
-        data = self.to_json()
-        for told in ("training", "colours"):
-            data.pop(told, None)
-        return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+        return answers_digest(self.to_json())
 
     def to_json(self) -> dict[str, Any]:
         """The model file's object; RAMs are stored as their non-zero addresses and counts."""
         data = {
-            "format": FORMAT,
-            "version": VERSION,
+            **header(self.kind),
             "encoder": self.encoder.to_json(),
             "classes": list(self.classes),
             "address_bits": self.address_bits,
@@ -151,12 +140,15 @@ class WisardModel:
         Raises:
             ModelFileError: the file is missing, damaged, of a newer version, or no model.
         """
-        data = read_json(path, "a model")
-        _check_format(data, path)
+        data = read_model_file(path)
+        if data["kind"] != cls.kind:
+            raise ModelFileError(
+                "the model is of another kind", value=f"{path} ({data['kind']})", hint="give one of pixels"
+            )
         try:
             return cls.from_json(data)
         except (ValueError, TypeError, IndexError, OverflowError) as error:
-            raise ModelFileError("the model contradicts itself", value=f"{path} ({error})") from error
+            raise contradicting(path, error) from error
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Self:
@@ -208,34 +200,6 @@ def picture_encoder(model: WisardModel) -> PictureEncoder:
             hint="use one that was trained on images",
         )
     return model.encoder
-
-
-@cache
-def _validator() -> jsonschema.Draft202012Validator:
-    schema = json.loads(files(__package__).joinpath("model.schema.json").read_text(encoding="utf-8"))
-    return jsonschema.Draft202012Validator(schema)
-
-
-def _check_format(data: dict[str, Any], path: Path) -> None:
-    if data.get("format") != FORMAT:
-        raise ModelFileError(
-            "not a wnn2hdl model", value=f"{path} (format {data.get('format')!r})", hint="train or import one"
-        )
-    version = data.get("version")
-    if isinstance(version, int) and version > VERSION:
-        raise ModelFileError(
-            "the model was saved by a newer wnn2hdl",
-            value=f"{path} (version {version})",
-            hint="upgrade wnn2hdl",
-        )
-    error = jsonschema.exceptions.best_match(_validator().iter_errors(data))
-    if error is not None:
-        where = "/".join(str(step) for step in error.absolute_path) or "the top level"
-        raise ModelFileError(
-            "the model file is damaged",
-            value=f"{path} (at {where}: {error.message[:120]})",
-            hint="save it again",
-        )
 
 
 def _sparse(ram: NDArray[np.int64]) -> dict[str, list[int]]:

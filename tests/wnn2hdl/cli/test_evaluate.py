@@ -13,6 +13,8 @@ from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.encode import parse_bits
+from wnn2hdl.ir import Thermometer
+from wnn2hdl.ir.models import LutGroupModel, LutLayer
 from wnn2hdl.training.discriminators import train
 
 Run = Callable[..., Any]
@@ -146,4 +148,39 @@ def test_chips_are_ranked_by_their_tags(evaluate: Run, run: Run, model: Path, tm
     ],
 )
 def test_options_that_do_not_fit(run: Run, model: Path, words: tuple[str, ...], complaint: str) -> None:
+    assert complaint in run("evaluate", model, *words).complaint()
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> tuple[Path, Path]:
+    """A model that says "high" above 1, and a table on which it errs once."""
+    layer = LutLayer(np.zeros((2, 1), dtype=np.int32), np.array([[True, False], [False, True]]))
+    groups = np.array([0, 1], dtype=np.int32)
+    LutGroupModel(Thermometer(((1.0,),)), ("low", "high"), (layer,), groups).save(tmp_path / "vectors.json")
+    (tmp_path / "t.csv").write_text("x,class\n0,low\n0.5,low\n1,low\n2,high\n")
+    return tmp_path / "vectors.json", tmp_path / "t.csv"
+
+
+def test_a_table_of_feature_vectors_has_wilsons_interval(
+    evaluate: Run, run: Run, table: tuple[Path, Path]
+) -> None:
+    model, rows = table
+    data = evaluate(model, "--table", rows, "--label", "class")
+    assert (data["accuracy"], data["samples"], data["classes"]) == (0.75, 4, ["low", "high"])
+    assert data["model"]["confusion"] == [[2, 1], [0, 1]]
+    assert data["model"]["intervals"]["accuracy"] == pytest.approx([0.3006, 0.9544], abs=1e-4)
+    assert data["interval"]["method"] == "Wilson score"
+    text = run("evaluate", model, "--table", rows, "--label", "class").stdout
+    assert text.startswith("model, 4 samples: accuracy 0.7500 (0.3006 to 0.9544), kappa ")
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (("--table", "t.csv"), "these options go together: --table and --label"),
+        (("--table", "t.csv", "--label", "class", "--images", "."), "a table has no pictures"),
+        (("--table", "t.csv", "--label", "class"), "the model does not classify feature vectors"),
+    ],
+)
+def test_tables_that_do_not_fit(run: Run, model: Path, words: tuple[str, ...], complaint: str) -> None:
     assert complaint in run("evaluate", model, *words).complaint()

@@ -17,6 +17,7 @@ from wnn2hdl.evaluation.measures import (
     ious,
     kappa,
     mean_iou,
+    wilson,
 )
 
 full = arrays(np.int64, st.integers(2, 4).map(lambda n: (n, n)), elements=st.integers(1, 50))
@@ -91,3 +92,9 @@ def test_an_interval_is_none_where_a_resample_has_no_figure() -> None:
     # Kappa is undefined for an image of one class that is all right.
     confusions = np.array([[[9, 0], [0, 0]], [[4, 1], [1, 4]]])
     assert interval(confusions, kappa, 0) is None
+
+
+def test_wilsons_interval_is_that_of_the_textbook() -> None:
+    # 10 of 20 right: centre 0.5, half-width z * sqrt(z²/4n² + p(1-p)/n) / (1 + z²/n).
+    assert wilson(np.array([[4, 5], [5, 6]])) == pytest.approx((0.2993, 0.7007), abs=1e-4)
+    assert wilson(np.array([[3, 0], [0, 0]])) == pytest.approx((0.4385, 1.0), abs=1e-4)

@@ -12,7 +12,6 @@ from wnn2hdl.ir import (
     Encoder,
     Neighbourhood,
     Tap,
-    Thermometer,
     codes_to_bits,
 )
 from wnn2hdl.ir.encoder import encoder_from_json
@@ -20,10 +19,6 @@ from wnn2hdl.ir.encoder import encoder_from_json
 selections = st.lists(st.sampled_from(sorted(PIXEL_BIT_NAMES)), min_size=1, unique=True).map(
     lambda names: BitSelect(tuple(names))
 )
-levels = st.lists(st.floats(allow_nan=False, allow_infinity=False), unique=True, max_size=5).map(
-    lambda values: tuple(sorted(values))
-)
-thermometers = st.lists(levels, min_size=1, max_size=4).filter(any).map(lambda t: Thermometer(tuple(t)))
 few_bits = st.lists(st.sampled_from(sorted(PIXEL_BIT_NAMES)), min_size=1, max_size=5, unique=True)
 
 
@@ -73,29 +68,6 @@ def test_an_image_gives_an_image_of_codes() -> None:
     assert BitSelect(("G7",)).codes(image).shape == (4, 5)
 
 
-def test_thermometer_bits_are_feature_major_and_include_the_threshold() -> None:
-    encoder = Thermometer(((1.0, 2.0), (), (0.5,)))
-    assert encoder.names == ("x0_t0", "x0_t1", "x2_t0")
-    assert encoder.bits([[1.0, 9.0, 0.4], [2.5, 9.0, 0.5]]).tolist() == [
-        [True, False, False],
-        [True, True, True],
-    ]
-
-
-@given(thermometers, st.data())
-def test_thermometer_bits_of_a_feature_never_rise(encoder: Thermometer, data: st.DataObject) -> None:
-    finite = st.floats(allow_nan=False, allow_infinity=False)
-    row = data.draw(st.lists(finite, min_size=len(encoder.thresholds), max_size=len(encoder.thresholds)))
-    bits = encoder.bits([row])[0]
-    assert len(bits) == encoder.width
-    start = 0
-    for value, thresholds in zip(row, encoder.thresholds, strict=True):
-        own = bits[start : start + len(thresholds)]
-        assert own.sum() == sum(value >= t for t in thresholds)
-        assert not (~own[:-1] & own[1:]).any()
-        start += len(thresholds)
-
-
 @given(neighbourhoods(), st.integers(0, 2**32 - 1))
 def test_a_neighbourhood_asks_each_tap_about_its_own_pixel(encoder: Neighbourhood, seed: int) -> None:
     picture = np.random.default_rng(seed).integers(0, 256, (6, 7, 3), dtype=np.uint8)
@@ -131,7 +103,7 @@ def test_taps_that_no_window_has() -> None:
         Neighbourhood(3, (Tap(3, 0, pixel, 1),))
 
 
-@given(st.one_of(selections, thermometers, neighbourhoods()))
+@given(st.one_of(selections, neighbourhoods()))
 def test_json_gives_the_encoder_back(encoder: Encoder) -> None:
     assert encoder_from_json(json.loads(json.dumps(encoder.to_json()))) == encoder
 
@@ -143,11 +115,3 @@ def test_json_gives_the_encoder_back(encoder: Encoder) -> None:
 def test_bits_that_cannot_be_selected(bits: tuple[str, ...], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         BitSelect(bits)
-
-
-@pytest.mark.parametrize(
-    "thresholds", [((2.0, 1.0),), ((1.0, 1.0),), ((float("nan"),),), ((float("inf"),),), ((), ())]
-)
-def test_thresholds_that_no_thermometer_has(thresholds: tuple[tuple[float, ...], ...]) -> None:
-    with pytest.raises(ValueError, match=r"do not rise|at least one threshold"):
-        Thermometer(thresholds)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import ModelFileError
 from wnn2hdl.ir import PIXEL_BIT_NAMES, BitSelect, Neighbourhood, Tap, WisardModel, codes_to_bits
-from wnn2hdl.ir.model import VERSION
+from wnn2hdl.ir.modelfile import VERSION
 
 
 def hand_worked() -> WisardModel:
@@ -150,9 +150,14 @@ def broken(**changes: object) -> dict[str, Any]:
     [
         ({}, r"not a wnn2hdl model: .*format None"),
         (broken(format="other"), "not a wnn2hdl model"),
-        (broken(version=VERSION + 1), r"saved by a newer wnn2hdl: .*version 2.*; upgrade wnn2hdl"),
-        (broken(version=0), "the model file is damaged: .*at version"),
-        (broken(version="1"), "the model file is damaged: .*at version"),
+        (broken(version=VERSION + 1), r"saved by a newer wnn2hdl: .*version 3.*; upgrade wnn2hdl"),
+        (broken(version=1), "saved by an older wnn2hdl: .*version 1.*; train or import it again"),
+        (broken(version="1"), "the model file is damaged: .*version '1'"),
+        (
+            broken(kind="perceptron"),
+            "no such kind of model: .*'perceptron'.*; known are wisard, sparse-wisard",
+        ),
+        (broken(kind=["wisard"]), "no such kind of model"),
         (broken(bleaching=0), "the model file is damaged: .*at bleaching"),
         (broken(bleaching=None), "the model file is damaged: .*at bleaching"),
         (broken(extra=1), "the model file is damaged: .*at the top level"),
@@ -165,7 +170,7 @@ def broken(**changes: object) -> dict[str, Any]:
         (broken(mapping=[[[0, 1], [2]]]), "the model contradicts itself"),
         (broken(mapping=[[[0, 1], [2, 9]]]), "the model contradicts itself: .*input bits . to 9"),
         (
-            broken(encoder={"kind": "thermometer", "thresholds": [[2, 1]]}),
+            broken(encoder={"kind": "thermometer", "thresholds": [[2, 1]], "strict": False}),
             "contradicts itself: .*do not rise",
         ),
         (broken(encoder={"kind": "thermometer", "thresholds": [[float("nan")]]}), "NaN is no finite number"),
@@ -208,7 +213,7 @@ def odd_count(addresses: list[Any]) -> dict[str, Any]:
         broken(address_bits=2.0),
         odd_count([1.0]),
         broken(mapping=[[[10**30, 0], [1, 2]]]),
-        broken(encoder={"kind": "thermometer", "thresholds": [[10**400]]}),
+        broken(encoder={"kind": "thermometer", "thresholds": [[10**400]], "strict": False}),
     ],
 )
 def test_odd_numbers_get_one_line(tmp_path: Path, data: dict[str, Any]) -> None:
@@ -220,7 +225,12 @@ def test_odd_numbers_get_one_line(tmp_path: Path, data: dict[str, Any]) -> None:
 
 def test_a_model_of_thermometer_bits_survives_its_file(tmp_path: Path) -> None:
     data = broken(
-        encoder={"kind": "thermometer", "thresholds": [[0.1, 0.30000000000000004], [], [1e-300, 2]]}
+        encoder={
+            "kind": "thermometer",
+            "thresholds": [[0.1, 0.30000000000000004], [], [1e-300, 2]],
+            "strict": True,
+            "input": {"bits": 16, "fraction": 12, "signed": True},
+        }
     )
     model = WisardModel.from_json(data)
     model.save(tmp_path / "m.json")

@@ -1,0 +1,60 @@
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from wnn2hdl.dataset.tables import read_table
+from wnn2hdl.errors import InputError
+
+
+def test_all_columns_but_the_label_are_features(tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text('\ufeffa,class,"b, c"\n1,x,-2.5\n\n3e2, y ,4\n', encoding="utf-8")
+    table = read_table(path, "class")
+    assert table.columns == ("a", "b, c")
+    assert table.features.tolist() == [[1.0, -2.5], [300.0, 4.0]]
+    assert table.labels == ("x", "y")
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (b"", r"no such column: class in .*"),
+        (b"a,b\n1,2\n", r"no such column: class in .*; it has a, b"),
+        (b"class\nx\n", "a table needs features"),
+        (b"a,a,class\n1,2,x\n", "each with a name of its own"),
+        (b"a,class\n", "the table has no rows"),
+        (b"a,class\n1,x\n2\n", "no label or another length than the first: row 2 of"),
+        (b"a,class\n1, \n", "no label or another length than the first: row 1 of"),
+        (b"a,class\nnan,x\n", "no finite number: 'nan' in row 1 of"),
+        (b"a,class\n1,x\ninf,x\n", "no finite number: 'inf' in row 2 of"),
+        (b"a,class\n,x\n", "no finite number: '' in row 1 of"),
+        (b"a,class\n1e999,x\n", "no finite number"),
+        (b"a,class\n\xff,x\n", "not a CSV table"),
+        (b'a,class\n"1"2,x\n', "not a CSV table"),
+    ],
+)
+def test_a_table_that_cannot_be_used_gets_one_line(tmp_path: Path, content: bytes, line: str) -> None:
+    path = tmp_path / "t.csv"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=line):
+        read_table(path, "class")
+
+
+def test_a_missing_table(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot read a table: .*No such file"):
+        read_table(tmp_path / "none.csv", "class")
+
+
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.tuples(numbers, numbers, st.sampled_from(["a", "b"])), min_size=1, max_size=8))
+def test_numbers_come_back_exactly(tmp_path: Path, rows: list[tuple[float, float, str]]) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text("x,y,class\n" + "".join(f"{a!r},{b!r},{label}\n" for a, b, label in rows))
+    table = read_table(path, "class")
+    assert table.features.tolist() == [[a, b] for a, b, _ in rows]
+    assert table.labels == tuple(label for _, _, label in rows)

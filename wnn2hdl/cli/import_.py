@@ -1,0 +1,95 @@
+"""`import`: other tools' trained models become model files."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wnn2hdl.cli.main import app
+from wnn2hdl.cli.options import file
+from wnn2hdl.cli.output import emit, json_option
+from wnn2hdl.importers import ImportOptions, import_model, known_formats
+from wnn2hdl.ir import Thermometer, Words
+from wnn2hdl.ir.models import ClassifierModel, LogicModel
+
+
+class FormatType(click.ParamType[str]):
+    """The name of a format that can be imported."""
+
+    name = "format"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The name, if there is such a format."""
+        if value not in known_formats():
+            self.fail(f"{value!r} is none of {', '.join(known_formats())}", param, ctx)
+        return str(value)
+
+
+@app.command("import")
+@click.argument("model", metavar="FILE", type=file)
+@click.option("-o", "--output", type=file, required=True, help="Model file to write.")
+@click.option(
+    "--format", "format_name", type=FormatType(), help="Format of FILE; found by its content if left out."
+)
+@click.option(
+    "--bleaching",
+    type=click.IntRange(min=1),
+    help="Fix the threshold of a wisardpkg model: another classifier than the file's.",
+)
+@click.option(
+    "--config", type=file, help="config.json of KANELÉ truth tables; the one beside FILE if left out."
+)
+@click.option(
+    "--classes",
+    type=click.IntRange(min=2),
+    help="Number of classes of a DWN whose checkpoint does not say it.",
+)
+@json_option
+def import_command(
+    model: Path,
+    output: Path,
+    format_name: str | None,
+    bleaching: int | None,
+    config: Path | None,
+    classes: int | None,
+    as_json: bool,
+) -> None:
+    """Turn another tool's trained model, FILE, into a model file.
+
+    Formats: wisardpkg JSON, BTHOWeN .pickle.lzma, DWN checkpoints of PyTorch, KANELÉ truth tables, AIGER,
+    BLIF. Files are read as data: nothing in them is run, and PyTorch is not needed.
+
+    \b
+    Examples:
+      wnn2hdl import dwn_checkpoint.pt -o model.json
+      wnn2hdl import wisard.json --bleaching 3 -o model.json
+      wnn2hdl import truth_tables.json --config config.json -o model.json
+    """
+    options = ImportOptions(bleaching=bleaching, config=config, classes=classes)
+    importer, imported = import_model(model, options, format_name)
+    imported.save(output)
+    kind, names = (
+        ("outputs", imported.outputs) if isinstance(imported, LogicModel) else ("classes", imported.classes)
+    )
+    data = {
+        "model": str(output),
+        "format": importer.name,
+        "kind": imported.kind,
+        "input_bits": imported.width,
+        "reads": _reads(imported),
+        kind: list(names),
+        "digest": imported.digest(),
+        "origin": dict(imported.origin),
+    }
+    text = f"{importer.description}: reads {data['reads']}, has {len(names)} {kind}\nwritten to {output}"
+    emit(data, text, as_json=as_json)
+
+
+def _reads(model: ClassifierModel | LogicModel) -> str:
+    """What goes into a model, in words: whether it encodes features itself is not to be missed."""
+    encoder = None if isinstance(model, LogicModel) else model.encoder
+    if isinstance(encoder, Thermometer):
+        return f"{encoder.features} features as {encoder.width} thermometer bits"
+    if isinstance(encoder, Words) and encoder.word_bits > 1:
+        return f"{encoder.features} words of {encoder.word_bits} bits"
+    return f"{model.width} bits as they are"

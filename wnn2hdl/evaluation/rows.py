@@ -1,0 +1,92 @@
+"""How often a model of feature vectors names the class that a table shows."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.dataset.tables import FeatureTable
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import Thermometer, WisardModel, Words
+from wnn2hdl.ir.models import ClassifierModel, LogicModel, load_model
+
+VectorClassifier = WisardModel | ClassifierModel
+
+SCALER = "scaler"
+"""What an imported model notes of how its features were scaled (see `wnn2hdl.importers.dwn`)."""
+
+
+def load_vector_classifier(path: Path) -> VectorClassifier:
+    """The classifier of feature vectors in a model file; raises InputError for any other file."""
+    model = load_model(path)
+    if isinstance(model, LogicModel) or not isinstance(model.encoder, Thermometer | Words):
+        raise InputError(
+            "the model does not classify feature vectors",
+            value=f"{path} (kind {model.kind})",
+            hint="measure a model of pixels on --images and --masks",
+        )
+    return model
+
+
+def scaled(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.float64]:
+    """A table's features as the model compares them.
+
+    Args:
+        model: what will read them.
+        table: the samples.
+        raw: whether they still have to be scaled; None if that was not said.
+
+    Raises:
+        InputError: the model's features are scaled and nothing was said; or it knows of no scaling for raw
+            ones, or of one for another number of features.
+    """
+    known = None if isinstance(model, WisardModel) else model.origin.get(SCALER)
+    if known is None:
+        if raw:
+            raise InputError(
+                "the model notes no scaling", value="--raw", hint="scale the table and leave it out"
+            )
+        return table.features
+    if raw is None:
+        raise InputError(
+            "the model's features are scaled, and the table does not say whether its are",
+            hint="give --scaled if they are, --raw if they are not",
+        )
+    if not raw:
+        return table.features
+    mean, scale = np.asarray(known["mean"]), np.asarray(known["scale"])
+    if mean.shape != scale.shape or mean.shape != table.features.shape[1:]:
+        raise InputError("the noted scaling is of another number of features", value=len(mean))
+    return np.asarray((table.features - mean) / scale)
+
+
+def row_confusion(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.int64]:
+    """Samples by true class (rows) and answer (columns): int64 ``[classes, classes]``.
+
+    Raises:
+        InputError: the table has another number of features than the model reads, features that it cannot
+            read, or a label that it has no class for; or see `scaled`.
+    """
+    encoder = model.encoder
+    assert isinstance(encoder, Thermometer | Words)
+    index = {name: position for position, name in enumerate(model.classes)}
+    foreign = sorted(set(table.labels) - index.keys())
+    if foreign:
+        raise InputError(
+            "the model has no class for a label",
+            value=foreign[0],
+            hint=f"it has {', '.join(model.classes[:20])}",
+        )
+    if len(table.columns) != encoder.features:
+        raise InputError(
+            "the table has another number of features than the model reads",
+            value=f"{len(table.columns)}, not {encoder.features}",
+        )
+    try:
+        bits = encoder.bits(scaled(model, table, raw))
+    except ValueError as error:
+        raise InputError("the model cannot read the features", value=error) from error
+    truth = np.array([index[name] for name in table.labels])
+    classes = len(model.classes)
+    cells = np.bincount(truth * classes + model.evaluate(bits), minlength=classes**2)
+    return cells.reshape(classes, classes)

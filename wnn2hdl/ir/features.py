@@ -1,0 +1,246 @@
+"""Encoders of feature vectors: thermometers, words taken as they are, and the numbers hardware reads."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+MAX_WORD_BITS = 48
+"""The widest fixed-point word; a float64 holds each of its values exactly."""
+
+MAX_FRACTION_BITS = 64
+
+
+@dataclass(frozen=True)
+class FixedPoint:
+    """Numbers as hardware reads them: word ``w`` stands for ``w / 2**fraction``.
+
+    Q3.12 with a sign is ``FixedPoint(bits=16, fraction=12)``.
+
+    Attributes:
+        bits: of a word, its sign included, 1 to `MAX_WORD_BITS`.
+        fraction: how many of them are behind the binary point, 0 to `MAX_FRACTION_BITS`.
+        signed: whether words are in two's complement.
+    """
+
+    bits: int
+    fraction: int
+    signed: bool = True
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.bits <= MAX_WORD_BITS:
+            raise ValueError(f"a word has 1 to {MAX_WORD_BITS} bits, not {self.bits}")
+        if not 0 <= self.fraction <= MAX_FRACTION_BITS:
+            raise ValueError(f"a word has 0 to {MAX_FRACTION_BITS} fraction bits, not {self.fraction}")
+
+    @property
+    def lowest(self) -> int:
+        """The lowest word."""
+        return -(1 << (self.bits - 1)) if self.signed else 0
+
+    @property
+    def highest(self) -> int:
+        """The highest word."""
+        return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+
+    def words(self, values: ArrayLike) -> NDArray[np.int64]:
+        """Words of numbers of any shape: rounded down, which costs no hardware, and saturated.
+
+        Raises:
+            ValueError: a number is NaN, which is neither low nor high.
+        """
+        array = np.asarray(values, dtype=np.float64)
+        if np.isnan(array).any():
+            raise ValueError("a feature is NaN")
+        # A number too large for float64 becomes infinite and saturates as it should.
+        with np.errstate(over="ignore"):
+            scaled = np.floor(np.ldexp(array, self.fraction))
+        return np.asarray(np.clip(scaled, self.lowest, self.highest).astype(np.int64))
+
+    def values(self, words: ArrayLike) -> NDArray[np.float64]:
+        """The numbers that words stand for, exactly."""
+        return np.asarray(np.ldexp(np.asarray(words, dtype=np.float64), -self.fraction))
+
+    def level(self, threshold: float, *, strict: bool) -> int:
+        """The lowest word whose number is above the threshold, or at it unless ``strict``.
+
+        The answer lies between `lowest`, if every word is, and ``highest + 1``, if none is.
+        """
+        exact = Fraction(threshold) * (1 << self.fraction)
+        word = math.floor(exact) + 1 if strict else math.ceil(exact)
+        return min(max(word, self.lowest), self.highest + 1)
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `from_json`."""
+        return {"bits": self.bits, "fraction": self.fraction, "signed": self.signed}
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Self:
+        """The format that wrote ``data``."""
+        return cls(data["bits"], data["fraction"], data["signed"])
+
+
+@dataclass(frozen=True)
+class Thermometer:
+    """Each feature compared with its own thresholds.
+
+    Attributes:
+        thresholds: per feature, its thresholds, none lower than the one before. Bit ``t`` of a feature is
+            ``x >= thresholds[t]``, or ``x > thresholds[t]`` if ``strict``; bits are feature-major: all of
+            feature 0, then all of feature 1.
+        strict: whether a feature at its threshold leaves the bit unset.
+        input: the words hardware reads; features are turned into words first. None: features are real
+            numbers, and hardware needs a format before it can be made.
+    """
+
+    kind: ClassVar[str] = "thermometer"
+    thresholds: tuple[tuple[float, ...], ...]
+    strict: bool = False
+    input: FixedPoint | None = None
+
+    def __post_init__(self) -> None:
+        for feature, levels in enumerate(self.thresholds):
+            if not all(np.isfinite(levels)) or any(a > b for a, b in pairwise(levels)):
+                raise ValueError(f"the thresholds of feature {feature} do not rise: {levels}")
+        if self.width == 0:
+            raise ValueError("a thermometer needs at least one threshold")
+
+    @property
+    def features(self) -> int:
+        """Numbers in a feature vector."""
+        return len(self.thresholds)
+
+    @cached_property
+    def width(self) -> int:
+        """Bits of a code."""
+        return sum(len(levels) for levels in self.thresholds)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each code bit: ``x3_t0`` is feature 3 against its first threshold."""
+        return tuple(f"x{f}_t{t}" for f, levels in enumerate(self.thresholds) for t in range(len(levels)))
+
+    @cached_property
+    def levels(self) -> tuple[tuple[int, ...], ...]:
+        """Per feature, the lowest word that sets each of its bits (see `FixedPoint.level`).
+
+        Raises:
+            ValueError: features are real numbers.
+        """
+        if self.input is None:
+            raise ValueError("the thermometer reads real numbers; it has no levels of words")
+        of = self.input.level
+        return tuple(tuple(of(t, strict=self.strict) for t in feature) for feature in self.thresholds)
+
+    def bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """Bits of feature vectors.
+
+        Args:
+            features: numbers, ``[samples, features]``.
+
+        Returns:
+            bool ``[samples, width]``.
+        """
+        if self.input is not None:
+            return self.bits_of_words(self.input.words(features))
+        array = _matrix(features, self.features, np.float64)
+        compare = np.greater if self.strict else np.greater_equal
+        columns = [compare(array[:, f, np.newaxis], np.asarray(t)) for f, t in enumerate(self.thresholds)]
+        return np.concatenate(columns, axis=1)
+
+    def bits_of_words(self, words: ArrayLike) -> NDArray[np.bool_]:
+        """Bits of the words that hardware reads.
+
+        Args:
+            words: whole numbers, ``[samples, features]``, in the range of ``input``.
+
+        Returns:
+            bool ``[samples, width]``, those of ``input.values(words)`` compared as real numbers.
+        """
+        array = _matrix(words, self.features, np.int64)
+        columns = [
+            array[:, f, np.newaxis] >= np.asarray(t, dtype=np.int64) for f, t in enumerate(self.levels)
+        ]
+        return np.concatenate(columns, axis=1)
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `encoder_from_json`."""
+        data = {
+            "kind": self.kind,
+            "thresholds": [list(levels) for levels in self.thresholds],
+            "strict": self.strict,
+        }
+        return data if self.input is None else data | {"input": self.input.to_json()}
+
+
+@dataclass(frozen=True)
+class Words:
+    """Features that are whole numbers from 0, taken bit by bit: pure wiring, no logic.
+
+    With words of one bit a network reads its bits as they are; so do models whose file holds no thresholds.
+
+    Attributes:
+        features: numbers in a feature vector.
+        word_bits: bits of each, 1 to 16. Code bit ``f * word_bits + b`` is bit ``b`` of feature ``f``, 0 the
+            least significant.
+    """
+
+    kind: ClassVar[str] = "words"
+    features: int
+    word_bits: int = 1
+
+    def __post_init__(self) -> None:
+        if self.features < 1 or not 1 <= self.word_bits <= 16:
+            raise ValueError(f"no words: {self.features} of {self.word_bits} bits")
+
+    @property
+    def width(self) -> int:
+        """Bits of a code."""
+        return self.features * self.word_bits
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each code bit: ``x3`` of one bit, ``x3_b0`` of several."""
+        if self.word_bits == 1:
+            return tuple(f"x{f}" for f in range(self.features))
+        return tuple(f"x{f}_b{b}" for f in range(self.features) for b in range(self.word_bits))
+
+    def bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """Bits of feature vectors.
+
+        Args:
+            features: whole numbers from 0 to ``2**word_bits - 1``, or bool, ``[samples, features]``.
+
+        Returns:
+            bool ``[samples, width]``.
+
+        Raises:
+            ValueError: other numbers.
+        """
+        array = _matrix(features, self.features, None)
+        with np.errstate(invalid="ignore"):  # NaN becomes some number, which is then no equal
+            words = array.astype(np.int64)
+        whole = np.array_equal(words, array)
+        if not whole or words.min(initial=0) < 0 or words.max(initial=0) >> self.word_bits:
+            raise ValueError(f"features must be whole numbers from 0 to {(1 << self.word_bits) - 1}")
+        split = words[..., np.newaxis] >> np.arange(self.word_bits) & 1
+        return split.astype(np.bool_).reshape(len(words), self.width)
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `encoder_from_json`."""
+        return {"kind": self.kind, "features": self.features, "word_bits": self.word_bits}
+
+
+FeatureEncoder = Thermometer | Words
+
+
+def _matrix(values: ArrayLike, features: int, dtype: type[np.generic] | None) -> NDArray[Any]:
+    array = np.asarray(values, dtype=dtype)
+    if array.ndim != 2 or array.shape[1] != features:
+        raise ValueError(f"features must be [samples, {features}], not of shape {list(array.shape)}")
+    return array
