@@ -79,7 +79,7 @@ def import_command(
         "reads": _reads(imported),
         kind: list(names),
         "digest": imported.digest(),
-        "origin": imported.origin,
+        "origin": dict(imported.origin),
     }
     text = f"{importer.description}: reads {data['reads']}, has {len(names)} {kind}\nwritten to {output}"
     emit(data, text, as_json=as_json)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
-from wnn2hdl.ir.tables import pack_contents, unpack_contents
 from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
+from wnn2hdl.ir.tables import pack_contents, unpack_contents
 
 CHANNELS = ("R", "G", "B")
 """Channels of a pixel, in the order of an image's last axis."""

@@ -1,7 +1,7 @@
 """What all models of the family share: bits in, answers out, a digest, a file."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeVar
 
@@ -33,7 +33,7 @@ class Model(ABC):
     """
 
     kind: ClassVar[str]
-    origin: dict[str, Any]
+    origin: Mapping[str, Any]
 
     @property
     @abstractmethod

@@ -1,5 +1,6 @@
 """A WiSARD whose RAMs are Bloom filters (BTHOWeN)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
@@ -46,7 +47,7 @@ class BloomWisardModel(ClassifierModel):
     mapping: NDArray[np.int32]
     hashes: NDArray[np.uint32]
     contents: NDArray[np.bool_]
-    origin: dict[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_classes(self.classes)
@@ -94,7 +95,7 @@ class BloomWisardModel(ClassifierModel):
             "mapping": pack(self.mapping),
             "hashes": pack(self.hashes),
             "contents": pack(self.contents),
-            "origin": self.origin,
+            "origin": dict(self.origin),
         }
 
     @classmethod

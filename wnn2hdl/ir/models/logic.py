@@ -1,5 +1,6 @@
 """Combinational networks of gates: an and-inverter graph with named inputs and outputs."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar, Self
@@ -34,7 +35,7 @@ class LogicModel(Model):
     outputs: tuple[str, ...]
     gates: NDArray[np.uint32]
     literals: NDArray[np.uint32]
-    origin: dict[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for names in (self.inputs, self.outputs):
@@ -101,7 +102,7 @@ class LogicModel(Model):
             "outputs": list(self.outputs),
             "gates": pack(self.gates),
             "literals": pack(self.literals),
-            "origin": self.origin,
+            "origin": dict(self.origin),
         }
 
     @classmethod

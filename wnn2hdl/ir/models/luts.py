@@ -1,5 +1,6 @@
 """Networks of look-up tables whose last layer is counted class by class (DWN)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, ClassVar, Self
@@ -74,7 +75,7 @@ class LutGroupModel(ClassifierModel):
     classes: tuple[str, ...]
     layers: tuple[LutLayer, ...]
     groups: NDArray[np.int32]
-    origin: dict[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_classes(self.classes)
@@ -127,7 +128,7 @@ class LutGroupModel(ClassifierModel):
                 {"mapping": pack(layer.mapping), "tables": pack(layer.tables)} for layer in self.layers
             ],
             "groups": pack(self.groups),
-            "origin": self.origin,
+            "origin": dict(self.origin),
         }
 
     @classmethod

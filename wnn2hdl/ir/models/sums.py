@@ -1,5 +1,6 @@
 """Networks whose nodes are sums of tables of one word each (KANELÉ)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
@@ -93,7 +94,7 @@ class TableSumModel(ClassifierModel):
     encoder: FeatureEncoder
     classes: tuple[str, ...]
     layers: tuple[SumLayer, ...]
-    origin: dict[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_classes(self.classes)
@@ -153,7 +154,7 @@ class TableSumModel(ClassifierModel):
             "encoder": self.encoder.to_json(),
             "classes": list(self.classes),
             "layers": layers,
-            "origin": self.origin,
+            "origin": dict(self.origin),
         }
 
     @classmethod

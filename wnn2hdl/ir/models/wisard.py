@@ -1,5 +1,6 @@
 """A WiSARD over any number of bits: RAMs that store the addresses they have seen, and no others."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
@@ -71,7 +72,7 @@ class SparseWisardModel(ClassifierModel):
     counts: NDArray[np.int64]
     bleaching: int | Dynamic
     ties: FirstOrLast = "first"
-    origin: dict[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_classes(self.classes)
@@ -147,7 +148,7 @@ class SparseWisardModel(ClassifierModel):
             if isinstance(self.bleaching, int)
             else {"confidence": self.bleaching.confidence},
             "ties": self.ties,
-            "origin": self.origin,
+            "origin": dict(self.origin),
         }
 
     @classmethod
