@@ -16,6 +16,7 @@ from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option, share_option
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.raster import Reading
@@ -146,7 +147,7 @@ def scan_command(
     with progress() as report:
         summary = Scanner.open(model, options, run, report).scan(picture, output, before, before_mask)
     for warning in summary["warnings"]:
-        click.echo(f"wnn2hdl: warning: {warning}", err=True)
+        say(f"wnn2hdl: warning: {warning}", error=True)
     emit(summary | {"output": str(output)}, _text(summary, output), as_json=as_json)
 
 
