@@ -60,6 +60,8 @@ def main() -> int:
         0 done; 1 a check or gate failed; 2 bad usage, bad input or a missing tool; 130 interrupted.
     """
     accept_any_text()
+    if platform.system() == "Windows":
+        return _complain("Windows is not supported; run wnn2hdl on Linux or macOS, or in WSL", 2)
     try:
         status = app(standalone_mode=False)
     except Wnn2hdlError as error:

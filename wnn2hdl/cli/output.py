@@ -52,6 +52,8 @@ def progress() -> Iterator[Callable[[str, int, int], None]]:
         yield report
     finally:
         if running:
+            # Before the lines are shown again, since the display may be drawn between them.
+            bars.live.vertical_overflow = "visible"
             for task in bars.tasks:
                 bars.update(task.id, visible=True)
             bars.stop()

@@ -1,6 +1,5 @@
 """`scan`: maps of deforestation from imagery of any size."""
 
-import os
 from functools import partial
 from pathlib import Path
 from typing import Any, get_args
@@ -20,6 +19,7 @@ from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.raster import Reading
+from wnn2hdl.tools import cores
 
 
 class BandsType(click.ParamType[tuple[int, ...]]):
@@ -142,8 +142,7 @@ def scan_command(
         minimum_area,
         vector,
     )
-    cores = len(os.sched_getaffinity(0))
-    run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores)
+    run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores())
     with progress() as report:
         summary = Scanner.open(model, options, run, report).scan(picture, output, before, before_mask)
     for warning in summary["warnings"]:

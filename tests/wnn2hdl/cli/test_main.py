@@ -67,6 +67,14 @@ def test_what_the_system_refuses_is_one_line(
     assert capsys.readouterr() == ("", f"{line}\n")
 
 
+def test_windows_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("platform.system", lambda: "Windows")
+    monkeypatch.setattr(sys, "argv", ["wnn2hdl", "doctor"])
+    assert main() == 2
+    line = "wnn2hdl: Windows is not supported; run wnn2hdl on Linux or macOS, or in WSL\n"
+    assert capsys.readouterr() == ("", line)
+
+
 @pytest.mark.slow
 def test_ctrl_c_in_the_middle_leaves_nothing(tmp_path: Path) -> None:
     model = tmp_path / "m.json"
