@@ -26,7 +26,7 @@ def printed(text: str, encoding: str) -> str:
         patch.setattr(sys, "stdout", stream)
         accept_any_text()
         say(text)
-    return stream.buffer.getvalue().decode(encoding)  # type: ignore[attr-defined]  # it is BytesIO
+    return stream.buffer.getvalue().decode(encoding)
 
 
 @given(st.text(), st.sampled_from([*NARROW, "utf-8"]))
@@ -69,7 +69,7 @@ def test_a_gate_says_no_in_every_encoding(
     monkeypatch.setattr(sys, "stdout", stdout)
     monkeypatch.setattr(sys, "argv", ["wnn2hdl", "report", str(build), "--max-luts", "1", "--format", form])
     assert main() == 1
-    text = stdout.buffer.getvalue()  # type: ignore[attr-defined]  # it is BytesIO
+    text = stdout.buffer.getvalue()
     if form == "junit":
         assert ET.fromstring(text).find("testsuite").attrib["name"] == "é漢"  # type: ignore[union-attr]
     else:
