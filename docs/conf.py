@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import wnn2hdl
-from wnn2hdl.cli.main import app
+from wnn2hdl.cli.commands import COMMANDS
 
 project = "wnn2hdl"
 author = "the wnn2hdl developers"
@@ -31,12 +31,10 @@ _PAGE = """.. click:: {module}:{function}
 def _write_command_pages(folder: Path) -> None:
     folder.mkdir(exist_ok=True)
     for page in folder.glob("*.rst"):
-        if page.stem not in app.commands:
+        if page.stem not in COMMANDS:
             page.unlink()
-    for name, command in app.commands.items():
-        assert command.callback is not None
-        function = command.callback.__name__
-        text = _PAGE.format(name=name, module=command.callback.__module__, function=function)
+    for name, entry in COMMANDS.items():
+        text = _PAGE.format(name=name, module=f"wnn2hdl.cli.{entry.module}", function=f"{name}_command")
         page = folder / f"{name}.rst"
         if not page.exists() or page.read_text(encoding="utf-8") != text:
             page.write_text(text, encoding="utf-8")

@@ -1,6 +1,5 @@
 """Reading and writing the project's JSON: whole files or nothing."""
 
-import fcntl
 import json
 import math
 import os
@@ -66,8 +65,14 @@ def open_alone(path: Path, what: str, flags: int = 0) -> int:
         the file's number; closing it lets others in.
 
     Raises:
-        InputError: the file cannot be opened, or another process has it open.
+        InputError: the file cannot be opened, another process has it open, or the system has no such locks.
     """
+    try:
+        import fcntl  # not there on Windows, where all else here works
+    except ImportError as error:
+        raise InputError(
+            f"this system cannot keep a {what} to one process", hint="run it on Linux or macOS, or in WSL"
+        ) from error
     try:
         file = os.open(path, os.O_RDWR | os.O_CREAT | flags, 0o666)
     except OSError as error:

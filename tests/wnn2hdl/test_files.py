@@ -1,5 +1,6 @@
 import os
 import resource
+import sys
 from pathlib import Path
 
 import pytest
@@ -141,6 +142,13 @@ def test_a_file_is_open_in_one_place_at_a_time(tmp_path: Path) -> None:
     os.close(files.open_alone(path, "scan"))
     with pytest.raises(InputError, match=r"cannot write the scan: .*No such file"):
         files.open_alone(tmp_path / "none" / "journal", "scan")
+
+
+def test_a_system_without_locks_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    with pytest.raises(InputError, match="this system cannot keep a scan to one process; run it on Linux"):
+        files.open_alone(tmp_path / "journal", "scan")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_new_folder_goes_again_if_nothing_came_of_it(tmp_path: Path) -> None:

@@ -18,9 +18,10 @@ from wnn2hdl.ir.wires import Bits
 from wnn2hdl.synth import cache
 
 _KIND = "simulations"
+_PASSED = {"passed": True}
 
 
-def simulation_key(design: Design, part: str) -> list[str]:
+def simulation_key(design: Design, part: str) -> dict[str, str]:
     """All that the simulation of a circuit depends on: its RTLIL, its vectors, the simulator."""
     claim = design.specification.claims[part]
     assert claim.stimulus is not None
@@ -30,17 +31,22 @@ def simulation_key(design: Design, part: str) -> list[str]:
         emit_src=False,
         missing_domain=lambda domain: ClockDomain(domain, reset_less=True),
     )
-    return [text, _digest(inputs), _digest(claim.answers(inputs)), version("amaranth")]
+    return {
+        "circuit": cache.digest(text),
+        "inputs": _digest(inputs),
+        "answers": _digest(claim.answers(inputs)),
+        "simulator": version("amaranth"),
+    }
 
 
-def passed(key: list[str]) -> bool:
+def passed(key: Mapping[str, str]) -> bool:
     """Whether a simulation of this key has passed."""
-    return cache.load(cache.entry(_KIND, key)) is not None
+    return cache.load(_KIND, key) == _PASSED
 
 
-def remember(key: list[str]) -> None:
+def remember(key: Mapping[str, str]) -> None:
     """Note that the simulation of this key has passed."""
-    cache.store(cache.entry(_KIND, key), {"passed": True})
+    cache.store(_KIND, key, _PASSED)
 
 
 def _digest(samples: Mapping[str, Bits]) -> str:

@@ -1,19 +1,5 @@
-"""The command line: one subcommand a stage, thin over `wnn2hdl.pipeline`."""
+"""The command line: one subcommand per stage, thin over the stages; each is imported when it is asked for."""
 
-from wnn2hdl.cli import (  # noqa: F401  # importing a module registers its commands
-    build,
-    check,
-    demo,
-    doctor,
-    evaluate,
-    import_,
-    learn,
-    locate,
-    report,
-    samples,
-    scan,
-    sweep,
-)
 from wnn2hdl.cli.main import main
 
 __all__ = ["main"]

@@ -74,7 +74,9 @@ class Discriminators:
 @palette_option
 @click.option("--regions", type=file, help="CSV of labelled rectangles: chip,label,x,y,width,height.")
 @click.option("--chips", type=folder, help="Folder of the chips that --regions names.")
-@click.option("--bits", metavar="R7,R6,…", help="Pixel bits to read.  [default: the 4 high bits of R, G, B]")
+@click.option(
+    "--bits", metavar="R7,R6,...", help="Pixel bits to read.  [default: the 4 high bits of R, G, B]"
+)
 @click.option("--address-bits", type=click.IntRange(1, 20), help="n, address bits of a RAM.  [default: 4]")
 @click.option("--rams", type=click.IntRange(min=1), help="k, RAMs of a discriminator.  [default: 16]")
 @click.option(

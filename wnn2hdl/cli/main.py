@@ -3,11 +3,12 @@
 import platform
 import signal
 import sys
-from importlib.metadata import version
 
 import click
 
 import wnn2hdl
+from wnn2hdl.cli.commands import LazyGroup
+from wnn2hdl.cli.terminal import accept_any_text, say
 from wnn2hdl.errors import Wnn2hdlError
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -16,13 +17,25 @@ TOOLS = ("amaranth", "pyosys", "pyeda", "numpy")
 """Packages whose versions decide what is emitted and counted."""
 
 
-def _versions() -> str:
+def _print_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    if not asked or context.resilient_parsing:
+        return
+    from importlib.metadata import version  # takes as long as all the rest of this module
+
     tools = ", ".join(f"{name} {version(name)}" for name in TOOLS)
-    return f"{tools}, Python {platform.python_version()}"
+    say(f"wnn2hdl {wnn2hdl.__version__}\n{tools}, Python {platform.python_version()}")
+    context.exit()
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(wnn2hdl.__version__, message=f"wnn2hdl %(version)s\n{_versions()}")
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_print_version,
+    help="Show the version and exit.",
+)
 def app() -> None:
     """Compile trained weightless neural networks to minimal, proved FPGA logic.
 
@@ -46,6 +59,9 @@ def main() -> int:
     Returns:
         0 done; 1 a check or gate failed; 2 bad usage, bad input or a missing tool; 130 interrupted.
     """
+    accept_any_text()
+    if platform.system() == "Windows":
+        return _complain("Windows is not supported; run wnn2hdl on Linux or macOS, or in WSL", 2)
     try:
         status = app(standalone_mode=False)
     except Wnn2hdlError as error:
@@ -61,12 +77,9 @@ def main() -> int:
     except OSError as error:
         place = "" if error.filename is None else f": {error.filename}"
         return _complain(f"the system refused: {error.strerror or error}{place}", 2)
-    except UnicodeEncodeError as error:
-        letter = ascii(error.object[error.start : error.end])
-        return _complain(f"cannot print {letter} in {error.encoding}; set PYTHONIOENCODING=utf-8", 2)
     return status if isinstance(status, int) else 0
 
 
 def _complain(line: str, status: int) -> int:
-    click.echo(f"wnn2hdl: {' '.join(line.split())}", err=True)
+    say(f"wnn2hdl: {' '.join(line.split())}", error=True)
     return status

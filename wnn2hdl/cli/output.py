@@ -11,6 +11,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from wnn2hdl.cli.terminal import say
+
 Command = Callable[..., Any]
 
 json_option = click.option(
@@ -20,7 +22,7 @@ json_option = click.option(
 
 def emit(data: dict[str, Any], text: str, *, as_json: bool) -> None:
     """Print a result: the JSON object, or the text made for people."""
-    click.echo(json.dumps(data, indent=1, allow_nan=False) if as_json else text)
+    say(json.dumps(data, indent=1, allow_nan=False) if as_json else text)
 
 
 @contextmanager
@@ -50,6 +52,8 @@ def progress() -> Iterator[Callable[[str, int, int], None]]:
         yield report
     finally:
         if running:
+            # Before the lines are shown again, since the display may be drawn between them.
+            bars.live.vertical_overflow = "visible"
             for task in bars.tasks:
                 bars.update(task.id, visible=True)
             bars.stop()

@@ -13,6 +13,7 @@ from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file
 from wnn2hdl.cli.output import emit, json_option
+from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.files import make_folder, write_text
 from wnn2hdl.report import (
@@ -151,7 +152,7 @@ def _folders(paths: Sequence[Path]) -> list[Path]:
     if not folders:
         raise InputError("no build among these", value=others, hint="see `wnn2hdl compile`")
     if others:
-        click.echo(f"wnn2hdl: passed over, since it is no build: {others}", err=True)
+        say(f"wnn2hdl: passed over, since it is no build: {others}", error=True)
     return folders
 
 

@@ -1,6 +1,5 @@
 """`scan`: maps of deforestation from imagery of any size."""
 
-import os
 from functools import partial
 from pathlib import Path
 from typing import Any, get_args
@@ -16,9 +15,11 @@ from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option, share_option
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.raster import Reading
+from wnn2hdl.tools import cores
 
 
 class BandsType(click.ParamType[tuple[int, ...]]):
@@ -141,12 +142,11 @@ def scan_command(
         minimum_area,
         vector,
     )
-    cores = len(os.sched_getaffinity(0))
-    run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores)
+    run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores())
     with progress() as report:
         summary = Scanner.open(model, options, run, report).scan(picture, output, before, before_mask)
     for warning in summary["warnings"]:
-        click.echo(f"wnn2hdl: warning: {warning}", err=True)
+        say(f"wnn2hdl: warning: {warning}", error=True)
     emit(summary | {"output": str(output)}, _text(summary, output), as_json=as_json)
 
 

@@ -69,7 +69,9 @@ class RangeType(click.ParamType[tuple[int, ...] | str]):
 @click.option(
     "--trials", type=click.IntRange(min=1), default=10, show_default=True, help="Of each architecture."
 )
-@click.option("--bits", metavar="R7,R6,…", help="Pixel bits to read; by default the 4 high bits of R, G, B.")
+@click.option(
+    "--bits", metavar="R7,R6,...", help="Pixel bits to read; by default the 4 high bits of R, G, B."
+)
 @click.option(
     "--pixels",
     type=click.IntRange(min=1),

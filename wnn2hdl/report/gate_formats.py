@@ -77,6 +77,7 @@ def gate_markdown(
 def gate_junit(checks: Sequence[Check]) -> str:
     """JUnit XML: a suite for each build, a case for each check, and for a failed one the reason, twice.
 
+    All characters are ASCII, others being references, so that it is right in whatever encoding it is printed.
     GitLab names a case by its ``classname`` and ``name``, shows the text of ``failure`` and not its
     ``message`` (docs.gitlab.com/ci/testing/unit_test_reports); readers for GitHub show the ``message``.
     """
@@ -92,9 +93,8 @@ def gate_junit(checks: Sequence[Check]) -> str:
                 text = _printable(f"{build}: {check.name}: {check.text}")
                 ET.SubElement(case, "failure", message=text, type="gate").text = text
     ET.indent(root, " ")
-    return ET.tostring(root, encoding="unicode", xml_declaration=False).join(
-        ['<?xml version="1.0" encoding="UTF-8"?>\n', "\n"]
-    )
+    body = ET.tostring(root, encoding="us-ascii", xml_declaration=False).decode()
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
 
 
 def _counts(checks: Sequence[Check]) -> dict[str, str]:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from wnn2hdl.errors import InputError, ToolError
 from wnn2hdl.synth import cache
@@ -14,23 +15,47 @@ from wnn2hdl.synth.resources import Resources, count_cells
 from wnn2hdl.tools import find_yosys, in_parallel
 
 OPTIONS = "synth_xilinx -family xc7 -flatten -noiopad"
-"""The one way in which everything is counted."""
+"""The one way in which everything is counted.
+
+Exactly its passes run, in its order, except those that can change nothing: reading library cells that are
+never counted, mapping the memories of a design without any, and the checks at the end. The count is that of
+the whole command, which takes five times as long for a small design.
+"""
 
 _TIMEOUT = 1800.0
 
+_MEMORIES = "memories.txt"
+
+# A design with memories ends this script; `_MAP_ALL` is run on it instead.
+_MAP_LOGIC = f"""\
+{OPTIONS} -run prepare:map_memory
+tee -q -o {_MEMORIES} select -list t:$mem*
+select -assert-none t:$mem*
+{OPTIONS} -run map_ffram:check
+"""
+
+_MAP_ALL = f"{OPTIONS} -run prepare:check\n"
+
 # Modules that keep their hierarchy are dissolved once they are mapped: `sta` looks into one module only.
-# synth_xilinx takes the timing arcs of CARRY4 away, and `sta` then reports a path that ends before the carry
-# chain (measured, Yosys 0.70), so the cells are read again before it.
-_SCRIPT = f"""\
+# synth_xilinx takes the timing arcs of CARRY4 and of flip-flops away, and `sta` then reports a path that ends
+# before the carry chain (measured, Yosys 0.70), so the mapped module joins a fresh copy of the cells.
+_SCRIPT = """\
+read_verilog -lib -specify +/xilinx/cells_sim.v
+design -save cells
 read_verilog design.v
-{OPTIONS} -top {{top}}
+hierarchy -check -top {top}
+{mapping}\
 tee -q -o stat.json stat -json
 setattr -mod -unset keep_hierarchy *
 flatten
 write_verilog -noattr netlist.v
-read_verilog -lib -specify +/xilinx/cells_sim.v
+design -stash mapped
+design -load cells
+design -copy-from mapped -as {top} {top}
 sta
 """
+
+_FLOW = cache.digest(_SCRIPT + _MAP_LOGIC + _MAP_ALL)
 
 
 @dataclass(frozen=True)
@@ -57,7 +82,7 @@ class Synthesis:
         netlist_verilog: the mapped netlist: 7-series cells under the top module's name and ports.
         tool: which Yosys: ``pyosys``.
         version: its version.
-        options: the command that was run, without the name of the top module.
+        options: the command whose passes were run (see `OPTIONS`), without the name of the top module.
         seconds: how long it took when it was made, wall clock.
     """
 
@@ -87,11 +112,18 @@ def synthesise(verilog: str, top: str, *, baseline: bool = False) -> Synthesis:
     if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_$]*", top):
         raise InputError("not a name of a Verilog module", value=repr(top))
     yosys = find_yosys()
-    entry = cache.entry("synth", [verilog, top, _SCRIPT, yosys.name, yosys.version])
-    kept = cache.load(entry)
-    mapped = _map(verilog, top) if kept is None else _Mapped(**kept)
-    if kept is None:
-        cache.store(entry, asdict(mapped))
+    key = {
+        "verilog": cache.digest(verilog),
+        "top": top,
+        "flow": _FLOW,
+        "tool": yosys.name,
+        "version": yosys.version,
+    }
+    kept = cache.load("synth", key)
+    mapped = _Mapped.read(kept) if kept is not None else None
+    if mapped is None:
+        mapped = _map(verilog, top)
+        cache.store("synth", key, asdict(mapped))
     return Synthesis(
         resources=count_cells(mapped.cells, delay_ps=mapped.delay_ps, baseline=baseline),
         netlist_verilog=mapped.netlist,
@@ -141,13 +173,26 @@ class _Mapped:
     netlist: str
     seconds: float
 
+    @classmethod
+    def read(cls, kept: Mapping[str, Any]) -> "_Mapped | None":
+        """What the cache holds; None where another version of this program wrote something else."""
+        match kept:
+            case {
+                "cells": dict(cells),
+                "delay_ps": int() | None as delay_ps,
+                "netlist": str(netlist),
+                "seconds": float(seconds),
+            } if all(isinstance(number, int) for number in cells.values()):
+                return cls(cells, delay_ps, netlist, seconds)
+        return None
+
 
 def _map(verilog: str, top: str) -> _Mapped:
     started = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-synth-") as name:
         folder = Path(name)
         (folder / "design.v").write_text(verilog, encoding="utf-8")
-        log = find_yosys().run(_SCRIPT.format(top=top), cwd=folder, timeout=_TIMEOUT)
+        log = _run(folder, top)
         try:
             statistics = json.loads((folder / "stat.json").read_text(encoding="utf-8"))
             # Modules that keep their hierarchy are listed beside the cells inside them, which are counted.
@@ -158,6 +203,18 @@ def _map(verilog: str, top: str) -> _Mapped:
         except (OSError, ValueError, LookupError, AttributeError) as error:
             raise ToolError("Yosys wrote no statistics that can be read", value=error, output=log) from error
     return _Mapped(cells, _delay_ps(log), netlist, time.perf_counter() - started)
+
+
+def _run(folder: Path, top: str) -> str:
+    """Map ``design.v`` in a folder by the shortest script that will do; return the log."""
+    yosys = find_yosys()
+    memories = folder / _MEMORIES
+    try:
+        return yosys.run(_SCRIPT.format(top=top, mapping=_MAP_LOGIC), cwd=folder, timeout=_TIMEOUT)
+    except ToolError:
+        if not memories.is_file() or not memories.read_text(encoding="utf-8").strip():
+            raise
+    return yosys.run(_SCRIPT.format(top=top, mapping=_MAP_ALL), cwd=folder, timeout=_TIMEOUT)
 
 
 def _delay_ps(log: str) -> int | None:

@@ -5,7 +5,7 @@ status 0. A failure is a `wnn2hdl.errors.ToolError` that carries the command and
 """
 
 from wnn2hdl.tools.abc import abc_version, find_abc, run_abc
-from wnn2hdl.tools.runner import Completed, in_parallel, run
+from wnn2hdl.tools.runner import Completed, cores, in_parallel, run
 from wnn2hdl.tools.simulators import (
     Simulator,
     find_icarus,
@@ -22,6 +22,7 @@ __all__ = [
     "Simulator",
     "Yosys",
     "abc_version",
+    "cores",
     "find_abc",
     "find_icarus",
     "find_verilator",

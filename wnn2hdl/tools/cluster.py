@@ -1,9 +1,13 @@
 """Jobs on many machines, by Dask distributed: a few a core at a time, and a dying worker loses nothing."""
 
-from collections.abc import Callable, Generator, Iterable
+import platform
+from collections.abc import Callable, Generator, Iterable, Mapping
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
+import wnn2hdl
 from wnn2hdl.errors import ToolError, Wnn2hdlError, extra_needed
 
 if TYPE_CHECKING:
@@ -48,7 +52,8 @@ def run_on_cluster(
 
     Raises:
         ExtraMissingError: Dask is not installed.
-        ToolError: no scheduler answers, it has no workers, or one of them cannot run jobs at all.
+        ToolError: no scheduler answers, it has no workers, one of them has another version of wnn2hdl, NumPy
+            or Python than this process, or cannot run jobs at all.
         Wnn2hdlError: what ``function`` raises of this kind.
     """
     with extra_needed("cluster", "running on a cluster needs Dask"):
@@ -63,6 +68,8 @@ def run_on_cluster(
         cores = sum(client.nthreads().values())
         if not cores:
             raise ToolError("the cluster has no workers", value=scheduler, hint="start `dask worker`s")
+        for worker, theirs in client.run(_versions, on_error="return").items():
+            _require_same(worker, theirs, _versions(), install)
         yield from _run(client, AHEAD * cores, function, shared, jobs, alone, install)
 
 
@@ -80,13 +87,14 @@ def _run(
     # The result of a task, not scattered data: those are lost with the last worker that has them, while the
     # scheduler can have a task done again.
     sent = client.submit(_identity, shared, pure=False)
+    ours = _versions()
     waiting = iter(jobs)
     running: dict[Future[Result], Job] = {}
     suspects: list[Job] = []
     completed = as_completed()
 
     def submit(job: Job) -> None:
-        future = client.submit(function, sent, job, pure=False)
+        future = client.submit(_call, function, sent, job, ours, install, pure=False)
         running[future] = job
         completed.add(future)
 
@@ -113,9 +121,41 @@ def _run(
             submit(following)
     for job in (part for suspect in suspects for part in alone(suspect)):
         try:
-            yield job, result(client.submit(function, sent, job, pure=False))
+            yield job, result(client.submit(_call, function, sent, job, ours, install, pure=False))
         except KilledWorker:
             yield job, None
+
+
+def _versions() -> dict[str, str]:
+    """What must be the same on all machines for the same results."""
+    python = ".".join(platform.python_version_tuple()[:2])
+    return {"wnn2hdl": wnn2hdl.__version__, "numpy": np.__version__, "Python": python}
+
+
+def _require_same(worker: str, theirs: object, ours: Mapping[str, str], install: str) -> None:
+    """Refuse a worker that is not like this process, or that cannot say what it is like."""
+    hint = f"install the same {install} on every worker"
+    if not isinstance(theirs, Mapping):
+        raise ToolError("a worker cannot run wnn2hdl", value=f"{worker} ({theirs})", hint=hint)
+    others = [
+        f"{name} {theirs.get(name, 'unknown')} instead of {here}"
+        for name, here in ours.items()
+        if theirs.get(name) != here
+    ]
+    if others:
+        raise ToolError("a worker has another version", value=f"{worker} has {', '.join(others)}", hint=hint)
+
+
+def _call(
+    function: Callable[[Shared, Job], Result],
+    shared: Shared,
+    job: Job,
+    ours: Mapping[str, str],
+    install: str,
+) -> Result:
+    """One job on a worker, which may have joined the cluster after the others were looked at."""
+    _require_same(platform.node(), _versions(), ours, install)
+    return function(shared, job)
 
 
 def _identity(shared: Shared) -> Shared:

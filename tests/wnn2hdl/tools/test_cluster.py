@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from wnn2hdl.errors import ExtraMissingError, InputError, ToolError
-from wnn2hdl.tools.cluster import run_on_cluster
+from wnn2hdl.tools.cluster import _require_same, run_on_cluster
 
 NOWHERE = "tcp://127.0.0.1:9"
 
@@ -43,6 +43,49 @@ def test_an_error_of_ours_comes_back_as_it_is_and_any_other_as_the_workers(clust
         run(cluster.scheduler_address, [1, 1000])
     with pytest.raises(ToolError, match=r"cannot do its work: division by zero; .*wnn2hdl.cluster. on every"):
         run(cluster.scheduler_address, [1, 0])
+
+
+def pretend(version: str) -> None:
+    """On a worker: be another version of this package."""
+    import wnn2hdl
+
+    wnn2hdl.__version__ = version
+
+
+@pytest.mark.slow
+def test_a_worker_of_another_version_is_refused_before_the_first_job(
+    cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from distributed import Client
+
+    with Client(cluster.scheduler_address) as client:
+        other = next(iter(client.scheduler_info()["workers"]))
+        client.run(pretend, "0.0.1", workers=[other])
+    with pytest.raises(ToolError, match=f"another version: {other} has wnn2hdl 0.0.1 instead of") as caught:
+        run(cluster.scheduler_address, [13])
+    assert "install the same wnn2hdl[cluster] on every worker" in str(caught.value)
+    # A worker that joins later is met by a job instead.
+    monkeypatch.setattr("distributed.Client.run", lambda *_, **__: {})
+    with pytest.raises(ToolError, match=r"has wnn2hdl 0\.0\.1 instead of"):
+        run(cluster.scheduler_address, range(1, 40))
+
+
+@pytest.mark.parametrize(
+    ("theirs", "fault"),
+    [
+        (
+            {"wnn2hdl": "1", "numpy": "2.0", "Python": "3.12"},
+            "w has numpy 2.0 instead of 2.1, Python 3.12 instead",
+        ),
+        ({"wnn2hdl": "1", "numpy": "2.1"}, "w has Python unknown instead of 3.11"),
+        (ModuleNotFoundError("No module named 'wnn2hdl'"), r"cannot run wnn2hdl: w \(No module named"),
+    ],
+)
+def test_whatever_differs_is_named(theirs: object, fault: str) -> None:
+    ours = {"wnn2hdl": "1", "numpy": "2.1", "Python": "3.11"}
+    _require_same("w", ours, ours, "wnn2hdl")
+    with pytest.raises(ToolError, match=fault):
+        _require_same("w", theirs, ours, "wnn2hdl")
 
 
 @pytest.mark.slow

