@@ -99,7 +99,9 @@ class _Chain:
             ends = ends[1:]
         start = low
         for end in ends:
-            below = self._part(start, end, level >> start & (1 << (end - start)) - 1, level & (1 << start) - 1, below)
+            below = self._part(
+                start, end, level >> start & (1 << (end - start)) - 1, level & (1 << start) - 1, below
+            )
             start = end
         assert below is not None
         return below

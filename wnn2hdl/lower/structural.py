@@ -15,9 +15,9 @@ from wnn2hdl.ir.models.base import ZERO, FirstOrLast
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table
 from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.lower.encoder import encoder_circuit, features_port
+from wnn2hdl.minimise.sharing import share
 
 CORE = "core"
-ENCODER = "encoder"
 NETWORK = "network"
 
 VotingModel = WisardModel | SparseWisardModel | LutGroupModel
@@ -38,22 +38,23 @@ class Layer:
     contents: NDArray[np.bool_]
 
 
-def network(model: VotingModel, core_circuit: Circuit, read: tuple[int, ...]) -> Circuit:
+def network(model: VotingModel) -> Circuit:
     """The whole network: ``features`` to ``class_bits``, the index of the class in binary.
 
-    Args:
-        model: the model; its encoder reads words of a stated format, or bits.
-        core_circuit: the network behind the encoder; its port ``bits`` has the bits of ``read``.
-        read: which bits of the model's encoder the core reads, ascending.
+    Tables are shared and lose what does not matter first, so that the encoder makes only bits that are read.
+
+    Raises:
+        InputError: as `core`, or the encoder reads numbers of no stated format.
     """
-    encoder = encoder_circuit(model.encoder, read)
     features = features_port(model.encoder)
+    shared = share(core(model), implied(model.encoder), known_bits(model.encoder))
+    encoder = encoder_circuit(model.encoder, shared.read)
     first = Instance("encode", encoder, {"features": features.word})
-    second = Instance("decide", core_circuit, {"bits": (Slice("encode.bits", 0, len(read)),)})
+    second = Instance("decide", shared.circuit, {"bits": (Slice("encode.bits", 0, len(shared.read)),)})
     ((net, width),) = second.drives.items()
     return Circuit(
         NETWORK,
-        f"Classifier of {len(model.classes)} classes.",
+        f"Network of {len(model.classes)} classes.",
         (features,),
         (first, second),
         {"class_bits": (Slice(net, 0, width),)},
@@ -112,6 +113,27 @@ def implied(encoder: Encoder) -> CareSet:
         groups.append(tuple(range(start, start + len(levels))))
         start += len(levels)
     return Implied(encoder.width, tuple(groups))
+
+
+def known_bits(encoder: Encoder) -> dict[int, bool | int]:
+    """Bits of an encoder that are the same for all words, or as an earlier bit, by position."""
+    if not isinstance(encoder, Thermometer) or encoder.input is None:
+        return {}
+    known: dict[int, bool | int] = {}
+    position = 0
+    for levels in encoder.levels:
+        first: dict[int, int] = {}
+        for level in levels:
+            if level <= encoder.input.lowest:
+                known[position] = True
+            elif level > encoder.input.highest:
+                known[position] = False
+            elif level in first:
+                known[position] = first[level]
+            else:
+                first[level] = position
+            position += 1
+    return known
 
 
 def _layers(model: VotingModel) -> tuple[list[Layer], NDArray[np.integer]]:

@@ -51,7 +51,11 @@ def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shar
     seen: dict[tuple[tuple[Slice, ...], bytes], Slice] = {}
     nodes: list[Node] = []
     for node in circuit.nodes:
-        if isinstance(node, Table) and isinstance(node.function, TruthTable) and len(node.function.outputs) == 1:
+        if (
+            isinstance(node, Table)
+            and isinstance(node.function, TruthTable)
+            and len(node.function.outputs) == 1
+        ):
             bits = [alias.get(bit, bit) for bit in _bits(node.word)]
             simple = _simplified(bits, node.function, port.name, care)
             if not isinstance(simple, tuple):
@@ -130,13 +134,13 @@ def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
             kept.append(node)
             needed |= {bit.net for word in node.reads for bit in word}
     kept.reverse()
-    read = sorted({bit.low for node in kept for word in node.reads for bit in _bits(word) if bit.net == port.name})
+    read = sorted(
+        {bit.low for node in kept for word in node.reads for bit in _bits(word) if bit.net == port.name}
+    )
     place = {position: i for i, position in enumerate(read)}
 
     def moved(word: Word) -> Word:
-        return tuple(
-            Slice(bit.net, place[bit.low]) if bit.net == port.name else bit for bit in _bits(word)
-        )
+        return tuple(Slice(bit.net, place[bit.low]) if bit.net == port.name else bit for bit in _bits(word))
 
     moved_nodes = [
         replace(node, word=moved(node.word)) if isinstance(node, Table | Sum) else node for node in kept

@@ -89,7 +89,9 @@ def _lines(model: VotingModel) -> list[str]:
         mapping, contents = _rams(model)
         owners = np.repeat(np.arange(len(model.classes)), model.rams).tolist()
         signals = _tables(lines, "ram", mapping, contents, signals)
-    votes = [[s for s, voted in zip(signals, owners, strict=True) if voted == c] for c in range(len(model.classes))]
+    votes = [
+        [s for s, voted in zip(signals, owners, strict=True) if voted == c] for c in range(len(model.classes))
+    ]
     width = max(len(word) for word in votes).bit_length()
     for number, word in enumerate(votes):
         lines.append(f"  wire [{width - 1}:0] response_{number} = {plain_sum(word, width)};")
