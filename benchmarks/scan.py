@@ -29,9 +29,9 @@ from sklearn.ensemble import RandomForestClassifier
 from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
+from wnn2hdl.apps.deforestation.source import PlainPicture
 
 from wnn2hdl.apps.deforestation.classify import Method, classify_window
-from wnn2hdl.apps.deforestation.source import PlainPicture
 from wnn2hdl.apps.deforestation.windows import cut
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.encode import high_bits

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from PIL import Image
-
 from wnn2hdl.apps.deforestation.source import PlainPicture, open_source
+
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import read_rgb
 from wnn2hdl.raster import Reading
