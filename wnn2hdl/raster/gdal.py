@@ -2,13 +2,14 @@
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
 from wnn2hdl.errors import InputError, extra_needed
+from wnn2hdl.files import require_file
 from wnn2hdl.raster.formats import TIFF, format_of
 
 CACHE_BYTES = 64 << 20
@@ -24,6 +25,12 @@ _SETTINGS = {
     # A second fence: GDAL's files of the network are of this one name, which nothing has.
     "CPL_VSIL_CURL_ALLOWED_FILENAME": "none",
 }
+
+_READ_BESIDE = (".aux.xml", ".aux", ".AUX", ".tfw", ".TFW", ".wld", ".WLD", ".pgw", ".jgw", ".bpw", ".tab")
+"""Files that GDAL reads as text, if they lie beside a raster, or with the same name but for its suffix."""
+
+_ERDAS = b"EHFA_HEADER_TAG"
+"""How files of Erdas Imagine begin, which name others that hold their parts."""
 
 _CONTROL_POINT_TOLERANCE = 0.01
 """How far, in pixels, control points may lie from an affine map that stands for them."""
@@ -66,16 +73,22 @@ class Georeference:
     def _of_control_points(cls, source: Any) -> Self:
         points, crs = source.gcps
         fitted = _rasterio().transform.from_gcps(points)
-        if fitted.is_degenerate or any(
-            math.hypot(column - point.col, row - point.row) > _CONTROL_POINT_TOLERANCE
-            for point, (column, row) in ((point, ~fitted * (point.x, point.y)) for point in points)
-        ):
+        if fitted.is_degenerate or _farthest(points, ~fitted) > _CONTROL_POINT_TOLERANCE:
             raise InputError(
                 f"{len(points)} control points locate the picture, and no affine map goes through them",
                 value=source.name,
                 hint="lay it on a grid first, for instance with gdalwarp",
             )
         return cls(crs.to_wkt() if crs else None, tuple(fitted)[:6])
+
+
+def _farthest(points: Sequence[Any], place: Any) -> float:
+    """How far, in pixels, control points lie from where an affine map of coordinates to pixels has them."""
+    a, b, c, d, e, f = tuple(place)[:6]
+    return max(
+        math.hypot(a * point.x + b * point.y + c - point.col, d * point.x + e * point.y + f - point.row)
+        for point in points
+    )
 
 
 def same_grid(one: Georeference, other: Georeference, height: int, width: int) -> bool:
@@ -169,11 +182,15 @@ def _require_harmless_neighbours(rasterio: Any, path: Path) -> None:
             if format_of(neighbour) != TIFF:
                 raise _pointing(neighbour)
             _open_harmless(rasterio, neighbour, TIFF).close()
-    names = (name + suffix for name in (path.name, path.stem) for suffix in (".aux", ".AUX"))
-    for neighbour in map(path.with_name, names):
-        # Of Erdas Imagine, whose files name others that hold their parts.
-        if neighbour.is_file() and neighbour.open("rb").read(15) == b"EHFA_HEADER_TAG":
-            raise _pointing(neighbour)
+    for name in (name + suffix for name in (path.name, path.stem) for suffix in _READ_BESIDE):
+        neighbour = path.with_name(name)
+        if not neighbour.exists():
+            continue
+        # GDAL would wait for a pipe.
+        require_file(neighbour, "a file beside the picture")
+        with neighbour.open("rb") as stream:
+            if stream.read(len(_ERDAS)) == _ERDAS:
+                raise _pointing(neighbour)
 
 
 def _pointing(path: Path) -> InputError:

@@ -7,7 +7,7 @@ import pytest
 
 from wnn2hdl.dataset import CLASSES, from_masks, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import Palette, write_png
+from wnn2hdl.images import MaskFormat, Palette, write_png
 from wnn2hdl.samples import CLASSES as KINDS
 from wnn2hdl.samples import landscape
 
@@ -40,7 +40,7 @@ def test_a_palette_gives_more_classes(folders: tuple[Path, Path]) -> None:
     palette = Palette.of(KINDS)
     for seed in (1, 2):
         write_png(masks / f"s{seed}.png", palette.paint(landscape(40, 30, seed).labels))
-    dataset = from_masks(images, masks, palette)
+    dataset = from_masks(images, masks, MaskFormat(palette))
     assert dataset.classes == KINDS
     assert np.array_equal(next(iter(dataset)).labels, landscape(40, 30, 1).labels.ravel())
 

@@ -13,13 +13,9 @@ from PIL import Image, TiffImagePlugin
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import (
-    Palette,
     list_images,
     picture_size,
-    read_labels,
-    read_mask,
     read_rgb,
-    write_png,
 )
 
 RGB = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)
@@ -170,54 +166,6 @@ def test_a_large_map_is_read_without_a_warning(tmp_path: Path, monkeypatch: pyte
     path = save(tmp_path / "a.png", RGB)
     monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", RGB.size // 3 - 1)
     assert read_rgb(path).shape == RGB.shape
-
-
-@pytest.mark.parametrize(("value", "label"), [(0, 0), (1, 1), (255, 1)])
-def test_masks_are_zero_or_not(tmp_path: Path, value: int, label: int) -> None:
-    path = save(tmp_path / "m.png", np.full((4, 5), value, dtype=np.uint8))
-    mask = read_mask(path, (4, 5))
-    assert mask.dtype == np.uint8
-    assert (mask == label).all()
-
-
-def test_a_mask_of_another_size_names_both_sizes(tmp_path: Path) -> None:
-    path = save(tmp_path / "m.png", RGB[..., 0])
-    with pytest.raises(InputError, match=r"different sizes: .*m\.png is 9x6, the picture 512x256"):
-        read_mask(path, (256, 512))
-
-
-def test_a_jpeg_mask_is_refused(tmp_path: Path) -> None:
-    path = save(tmp_path / "m.jpg", RGB[..., 0])
-    with pytest.raises(InputError, match="a JPEG cannot be a mask"):
-        read_mask(path, (6, 9))
-
-
-@pytest.mark.parametrize(
-    ("palette", "refused"), [([0, 0, 0, 255, 0, 0], False), ([255, 255, 255, 0, 0, 0], True)]
-)
-def test_a_palette_mask_must_not_have_two_readings(tmp_path: Path, palette: list[int], refused: bool) -> None:
-    picture = Image.fromarray(np.array([[0, 1, 1]], dtype=np.uint8)).convert("P")
-    picture.putpalette(palette)
-    picture.save(tmp_path / "m.png")
-    if refused:
-        with pytest.raises(InputError, match="palette does not give black"):
-            read_mask(tmp_path / "m.png", (1, 3))
-    else:
-        assert read_mask(tmp_path / "m.png", (1, 3)).tolist() == [[0, 1, 1]]
-
-
-def test_painting_and_reading_labels_are_inverse(tmp_path: Path) -> None:
-    palette = Palette.of(("forest", "pasture", "river", "swamp", "town"))
-    labels = np.random.default_rng(1).integers(0, 5, (7, 8), dtype=np.uint8)
-    write_png(tmp_path / "m.png", palette.paint(labels))
-    assert np.array_equal(read_labels(tmp_path / "m.png", (7, 8), palette), labels)
-
-
-def test_a_colour_outside_the_palette_is_named(tmp_path: Path) -> None:
-    palette = Palette(("forest", "river"), ((0, 0, 0), (0, 0, 255)))
-    path = save(tmp_path / "m.png", np.array([[[0, 0, 255], [1, 2, 3]]], dtype=np.uint8))
-    with pytest.raises(InputError, match=r"1 pixels of the mask .* not in the palette: .*m\.png \(#010203\)"):
-        read_labels(path, (1, 2), palette)
 
 
 @pytest.mark.realdata

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from wnn2hdl.apps.deforestation.source import PlainPicture
 
 from wnn2hdl.apps.deforestation.classify import Method, classify_window, unpack
 from wnn2hdl.apps.deforestation.cleanup import despeckle
 from wnn2hdl.apps.deforestation.windows import Window
 from wnn2hdl.evaluation.classifiers import PictureClassifier, model_classifier
 from wnn2hdl.evaluation.squares import vote
+from wnn2hdl.images import PlainPicture
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.raster import NODATA
 
