@@ -87,6 +87,9 @@ def plain_head(path: Path, kind: str) -> PlainHead | None:
     with _opened(path) as picture:
         if picture.mode not in EIGHT_BIT_MODES or _sample_bits(picture) > 8:
             return None
+        if picture.format == "BMP" and picture.mode == "1":
+            # Pillow takes indices of 8 bits for single bits where two colours are black and white.
+            return None
         turn = int(picture.getexif().get(_ORIENTATION_TAG, 1))
         turn = turn if 1 <= turn <= 8 else 1
         if isinstance(picture, TiffImagePlugin.TiffImageFile) and (turn != 1 or not _plain_tiff(picture)):

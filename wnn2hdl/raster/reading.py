@@ -84,7 +84,7 @@ class RasterReader:
             else:
                 self._levels = Levels.of(source, path, self._channels, reading.scale)
             alpha = masking_alpha(source, path, reading.bands, reading.alpha)
-            self._validity = self._impossible(Validity.of(source, self._channels.indexes, alpha))
+            self._validity = self._impossible(Validity.of(source, path, self._channels.indexes, alpha))
 
     def _impossible(self, validity: Validity) -> Validity:
         levels = self._levels

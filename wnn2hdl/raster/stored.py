@@ -46,7 +46,7 @@ def read_stored(path: Path) -> Stored:
         kinds = tuple(x.name for x in source.colorinterp)
         channels = choose_channels(path, kinds, source.descriptions)
         alpha = masking_alpha(source, path, None, None)
-        validity = Validity.of(source, channels.indexes, alpha)
+        validity = Validity.of(source, path, channels.indexes, alpha)
         samples = source.read(list(channels.indexes))
         opacity = None if alpha is None else source.read(alpha)
         valid = validity.read(source, samples, opacity, {})

@@ -41,11 +41,22 @@ class Validity:
     impossible: tuple[bool, ...]
 
     @classmethod
-    def of(cls, source: Any, indexes: tuple[int, ...], alpha: int | None) -> Self:
-        """Of an open dataset, its bands to read and the one that masks; nodata could be measurements."""
+    def of(cls, source: Any, path: Path, indexes: tuple[int, ...], alpha: int | None) -> Self:
+        """Of an open dataset, its bands to read and the one that masks; nodata could be measurements.
+
+        Raises:
+            InputError: a mask lies beside the file, and GDAL does not take it for one.
+        """
         flags = {flag.name for band in indexes for flag in source.mask_flag_enums[band - 1]}
         nodata = tuple(source.nodatavals[band - 1] for band in indexes)
         own = "per_dataset" in flags and "alpha" not in flags
+        beside = [path.with_name(path.name + suffix) for suffix in (".msk", ".MSK")]
+        if not own and any(file.exists() for file in beside):
+            raise InputError(
+                "the mask beside the picture does not say which of its bands it is for",
+                value=f"{path}.msk",
+                hint="remove it, or make it with GDAL (INTERNAL_MASK_FLAGS_1=2)",
+            )
         return cls(len(indexes), own, alpha, nodata, (False,) * len(indexes))
 
     @property

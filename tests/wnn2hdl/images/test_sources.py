@@ -1,4 +1,4 @@
-"""Pictures are read as the rest of the project reads them."""
+"""Pictures in windows are the same as whole ones."""
 
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,13 @@ from PIL import Image
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import PlainPicture, open_picture, read_rgb
 from wnn2hdl.raster import Reading
+from wnn2hdl.samples import landscape
+
+
+@pytest.fixture
+def pixels() -> NDArray[np.uint8]:
+    """A landscape of 150 x 210 pixels."""
+    return landscape(150, 210, seed=3).image
 
 
 def read(path: Path, reading: Reading | None = None) -> tuple[NDArray[np.uint8], NDArray[np.bool_] | None]:
