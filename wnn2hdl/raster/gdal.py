@@ -22,6 +22,8 @@ _SETTINGS = {
     "GDAL_CACHEMAX": CACHE_BYTES,
     # Only the names that `_require_harmless_neighbours` looks at are then looked for beside a file.
     "GDAL_DISABLE_READDIR_ON_OPEN": "TRUE",
+    # Of its own threads GDAL prints the warnings; windows are read by several of ours anyway.
+    "GDAL_NUM_THREADS": "1",
     # A second fence: GDAL's files of the network are of this one name, which nothing has.
     "CPL_VSIL_CURL_ALLOWED_FILENAME": "none",
 }

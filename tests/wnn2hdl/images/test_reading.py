@@ -148,6 +148,27 @@ def test_truncated_pictures_give_one_line(
     assert name in str(caught.value)
 
 
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.bmp"])
+@given(
+    share=st.floats(0.2, 1), flips=st.lists(st.tuples(st.floats(0, 0.999), st.integers(1, 255)), max_size=4)
+)
+@settings(max_examples=40, deadline=None)
+def test_damaged_pictures_are_read_or_give_one_line(
+    tmp_path_factory: pytest.TempPathFactory, name: str, share: float, flips: list[tuple[float, int]]
+) -> None:
+    path = save(tmp_path_factory.mktemp("damaged") / name, np.tile(RGB, (4, 4, 1)))
+    content = bytearray(path.read_bytes())[: int(share * path.stat().st_size)]
+    for place, change in flips:
+        content[int(place * len(content))] ^= change
+    path.write_bytes(content)
+    complaint = ""
+    try:
+        read_picture(path)
+    except InputError as error:
+        complaint = str(error)
+    assert not complaint or (name in complaint and "\n" not in complaint)
+
+
 @pytest.mark.parametrize("name", ["a.bmp", "a.tif"])
 def test_a_picture_beyond_the_safety_limit_is_refused(tmp_path: Path, name: str) -> None:
     if name == "a.bmp":
