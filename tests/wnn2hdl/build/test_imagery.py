@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from wnn2hdl.build.imagery import Imagery, edge_agreement, learn_edges, survey
 from wnn2hdl.edges import boundary
@@ -11,6 +12,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.images import list_images, read_rgb
 from wnn2hdl.ir import WisardModel, pixel_encoder, window_codes
 from wnn2hdl.raster import Reading
+from wnn2hdl.samples import landscape
 from wnn2hdl.wisard import PixelClassifier
 
 
@@ -48,3 +50,25 @@ def test_learned_patterns_agree_with_canny_at_least_as_well_as_any_boundary(
 def test_an_empty_folder_is_refused(model: WisardModel, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no pictures"):
         survey(model, Imagery(tmp_path, Reading()), silent)
+
+
+def test_what_is_no_data_is_neither_a_code_nor_a_window(model: WisardModel, tmp_path: Path) -> None:
+    scene = landscape(64, 64, 3).image
+    alpha = np.full((64, 64), 255, dtype=np.uint8)
+    alpha[:, 40:] = 0
+    Image.fromarray(np.dstack([scene, alpha])).save(tmp_path / "a.png")
+    seen = survey(model, Imagery(tmp_path, Reading()), silent)
+    (tmp_path / "cut").mkdir()
+    Image.fromarray(scene[:, :40]).save(tmp_path / "cut" / "a.png")
+    expected = survey(model, Imagery(tmp_path / "cut", Reading()), silent)
+    assert np.array_equal(seen.codes, expected.codes)
+    assert np.array_equal(seen.windows, expected.windows)
+    assert (seen.left_out, expected.left_out) == (24 / 64, 0)
+
+
+def test_the_rim_of_the_data_is_no_edge(model: WisardModel, tmp_path: Path) -> None:
+    pixels = np.full((32, 32, 4), (40, 90, 40, 255), dtype=np.uint8)
+    pixels[:, 20:] = (255, 255, 255, 0)
+    Image.fromarray(pixels).save(tmp_path / "a.png")
+    found = edge_agreement(boundary(), model, Imagery(tmp_path, Reading()), silent)
+    assert (found.found, found.expected) == (0, 0)

@@ -73,7 +73,8 @@ def turned(path: Path) -> None:
 
 
 DEEP = PIXELS * np.uint16(9)
-POINTING = '<PAMDataset><Metadata domain="OVERVIEWS"><MDI key="OVERVIEW_FILE">/etc/passwd</MDI></Metadata></PAMDataset>'
+ITEM = '<MDI key="OVERVIEW_FILE">/etc/passwd</MDI>'
+POINTING = f'<PAMDataset><Metadata domain="OVERVIEWS">{ITEM}</Metadata></PAMDataset>'
 INFRARED = np.concatenate([BANDS, BANDS[:1] // 2 + 90])
 
 BAD: dict[str, tuple[str, Callable[[Path], object]]] = {
@@ -102,7 +103,7 @@ BAD: dict[str, tuple[str, Callable[[Path], object]]] = {
         lambda path: Image.fromarray(np.dstack([PIXELS, PIXELS[..., 0] // 2 + 90])).save(path),
     ),
     "units": ("a.tif", with_units),
-    "large colour table": ("a.tif", lambda path: raster(path, DEEP[np.newaxis, ..., 0], photometric="palette")),
+    "large colour table": ("a.tif", lambda path: raster(path, DEEP.T[:1], photometric="palette")),
     "turned tiff": ("a.tif", turned),
     "virtual mask": ("a.tif", lambda path: beside(path, ".msk", "<VRTDataset/>")),
     "pointing at another file": ("a.tif", lambda path: beside(path, ".aux.xml", POINTING)),

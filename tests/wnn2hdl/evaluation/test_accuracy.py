@@ -9,6 +9,7 @@ from wnn2hdl.encode import parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels, with_halo
 from wnn2hdl.evaluation.classifiers import PixelTable, model_classifier
+from wnn2hdl.images import Picture
 from wnn2hdl.ir import WisardModel
 
 
@@ -64,6 +65,54 @@ def test_a_neighbourhood_sees_the_border_repeated() -> None:
     assert evaluate(LeftNeighbour(), data, silent).accuracy == 1
     picture = np.arange(12, dtype=np.uint8).reshape(2, 2, 3)
     assert with_halo(picture, 2)[:, :, 0].tolist() == [[0, 0, 0, 3, 3, 3]] * 3 + [[6, 6, 6, 9, 9, 9]] * 3
+
+
+def partly(reds: list[list[int]], labels: list[list[int]], valid: list[list[int]]) -> Dataset:
+    """An image; pixels of the label 255 are not labelled."""
+    pixels = np.zeros((*np.shape(reds), 3), dtype=np.uint8)
+    pixels[..., 0] = reds
+    picture = Picture(pixels, np.array(valid, dtype=np.bool_))
+    image = LabelledImage.of("a", picture, np.array(labels, dtype=np.uint8))
+    return Dataset(CLASSES, ("a",), lambda name: image)
+
+
+def test_what_is_left_out_is_neither_right_nor_wrong() -> None:
+    data = partly([[0, 255, 255], [0, 0, 255]], [[0, 0, 255], [0, 1, 1]], [[1, 1, 1], [1, 0, 1]])
+    result = evaluate(red_table([0, 1]), data, silent)
+    assert result.confusion.tolist() == [[[2, 1], [0, 1]]]
+    assert result.left_out.tolist() == [2]
+    assert result.left_out_share == 2 / 6
+
+
+def test_neighbours_must_be_data_and_need_no_label() -> None:
+    data = partly([[255, 0, 0, 0, 0]] * 3, [[255, 1, 0, 0, 0]] * 3, [[1, 1, 1, 1, 0]] * 3)
+    result = evaluate(LeftNeighbour(), data, silent)
+    # The fourth column is beside one that is no data.
+    assert result.confusion.tolist() == [[[3, 0], [0, 3]]]
+    assert result.left_out.tolist() == [9]
+
+
+def test_only_data_votes_in_squares_and_only_labels_make_their_truth() -> None:
+    data = partly(
+        [[255, 255], [255, 0]],
+        [[0, 255], [255, 0]],
+        [
+            [
+                0,
+                0,
+            ],
+            [0, 1],
+        ],
+    )
+    squares = Squares(side=2, share=1.0, seed=0)
+    assert evaluate(red_table([0, 1]), data, silent, squares).confusion.tolist() == [[[1, 0], [0, 0]]]
+    labelled = partly([[0, 0], [0, 0]], [[1, 255], [255, 255]], [[1, 1], [1, 1]])
+    assert majority_labels(labelled, 2).load("a").labels.tolist() == [1]
+
+
+def test_images_without_a_label_are_refused() -> None:
+    with pytest.raises(InputError, match="no pixel can be measured"):
+        evaluate(red_table([0, 1]), partly([[0]], [[255]], [[1]]), silent)
 
 
 def test_squares_go_with_the_majority_of_their_pixels() -> None:
