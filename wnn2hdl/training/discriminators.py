@@ -107,7 +107,7 @@ def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> Wi
         seen[COLOURS.codes(image.pixels)] = True
         used, left_out = used + len(image.labels), left_out + image.left_out
     figures = {LEFT_OUT: {"pixels": left_out, "share": left_out / (used + left_out)}}
-    return replace(model, colours=np.flatnonzero(seen), training=model.training | figures)
+    return replace(model, colours=np.flatnonzero(seen), training=dict(model.training) | figures)
 
 
 def _histogram(image: LabelledImage, encoder: BitSelect, shape: tuple[int, int]) -> NDArray[np.int64]:
