@@ -297,8 +297,7 @@ class Scanner:
 
     def _identity(self, files: Iterable[Path]) -> dict[str, Any]:
         """What decides the result, as far as it can be told without reading all of the picture's files."""
-        # A mosaic's parts may lie where only GDAL can look.
-        states = {file.absolute(): file.stat() for file in files if file.is_file()}
+        states = {file.absolute(): file.stat() for file in files}
         return {
             "version": wnn2hdl.__version__,
             "files": [[str(file), state.st_size, state.st_mtime_ns] for file, state in states.items()],
