@@ -19,12 +19,10 @@ class Picture:
     Attributes:
         pixels: uint8 ``[height, width, 3]``: red, green, blue.
         valid: bool ``[height, width]``: which pixels are data.
-        note: what had to be assumed about the file.
     """
 
     pixels: NDArray[np.uint8]
     valid: NDArray[np.bool_]
-    note: str = ""
 
     @property
     def left_out(self) -> int:
@@ -43,7 +41,7 @@ def read_picture(path: Path, reading: Reading = Reading()) -> Picture:  # noqa: 
     require_decodable(path, source.height, source.width)
     pixels, valid = source.read(0, 0, source.height, source.width)
     everywhere = np.ones((source.height, source.width), dtype=np.bool_)
-    return Picture(pixels, everywhere if valid is None else valid, source.note)
+    return Picture(pixels, everywhere if valid is None else valid)
 
 
 def read_rgb(path: Path, reading: Reading = Reading()) -> NDArray[np.uint8]:  # noqa: B008  # frozen
