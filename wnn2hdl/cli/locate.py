@@ -12,8 +12,10 @@ from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import made_folder
+from wnn2hdl.raster import Reading
 
 if TYPE_CHECKING:
     from wnn2hdl.apps.navigation.results import SearchKind
@@ -46,6 +48,7 @@ class CalibrationType(click.ParamType[int | Path]):
 
 @app.command("locate")
 @click.option("--map", "map_file", type=file, help="GeoTIFF of the country flown over.")
+@reading_options
 @click.option("--frames", type=folder, help="Folder of the camera's frames.")
 @click.option("--poses", "poses_file", type=file, help="CSV of the frames' logged poses, the truth.")
 @click.option("--camera", "camera_file", type=file, help="TOML of the camera.")
@@ -99,6 +102,7 @@ class CalibrationType(click.ParamType[int | Path]):
 @json_option
 def locate_command(
     map_file: Path | None,
+    reading: Reading,
     frames: Path | None,
     poses_file: Path | None,
     camera_file: Path | None,
@@ -148,9 +152,12 @@ def locate_command(
         if map_file and frames and poses_file:
             scored, calibrating = _divided(read_poses(poses_file), calibration, calibrate_frames)
             files = frame_files(scored, frames) | frame_files(calibrating, calibrate_frames or frames)
-            recording = Recording.of_files(map_file, files, _camera(camera_file, focal)).scoring(scored)
+            recording = Recording.of_files(map_file, files, _camera(camera_file, focal), reading)
+            recording = recording.scoring(scored)
         else:
             _refuse_halves(given, {"--camera": camera_file, "--focal": focal})
+            if reading != Reading():
+                raise InputError("--bands, --scale and --alpha are for a map from a file", hint="give --map")
             if isinstance(calibration, Path):
                 raise InputError(
                     "the embedded flight has no file of poses",

@@ -13,6 +13,7 @@ from wnn2hdl.apps.navigation.poses import Pose
 from wnn2hdl.apps.navigation.world import WorldMap
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import picture_size, read_rgb
+from wnn2hdl.raster import Reading
 from wnn2hdl.samples.flight import Flight, make_flight
 
 SAMPLE_MAP = (1000, 1000)
@@ -41,19 +42,26 @@ class Recording:
     read: Callable[[Pose], NDArray[np.uint8]]
 
     @classmethod
-    def of_files(cls, map_file: Path, files: Mapping[Pose, Path], camera: Camera | float) -> Self:
+    def of_files(
+        cls,
+        map_file: Path,
+        files: Mapping[Pose, Path],
+        camera: Camera | float,
+        reading: Reading = Reading(),  # noqa: B008  # frozen
+    ) -> Self:
         """A recording whose frames are read when they are wanted.
 
         Args:
-            map_file: a GeoTIFF.
+            map_file: a georeferenced picture.
             files: the file of each frame, at least one, in the order of the flight.
             camera: the camera, or its focal length in pixels of the first frame.
+            reading: how the map is read.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
             InputError: the map or a frame is missing or cannot be used, or has not the camera's shape.
         """
-        world = WorldMap.read(map_file)
+        world = WorldMap.read(map_file, reading)
         sizes = {file: picture_size(file) for file in files.values()}
         height, width = next(iter(sizes.values()))
         known = camera if isinstance(camera, Camera) else Camera.of_focal(camera, width, height)

@@ -1,6 +1,5 @@
 """The map: a georeferenced picture, laid out as the grid that matching happens on."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.apps.navigation.grid import MapGrid, local_crs, transformer
 from wnn2hdl.errors import InputError, extra_needed
+from wnn2hdl.images import PlainPicture, Source, open_picture
 from wnn2hdl.ir.window import SIDE
+from wnn2hdl.raster import Reading
 
 if TYPE_CHECKING:
     from affine import Affine
@@ -27,61 +28,57 @@ _VOID_SHARE = 0.001
 """A plain black or white region at the map's edge is taken for no picture if it is this part of the map."""
 
 _MOST_PIXELS = 1 << 30
-"""Of a grid: its picture takes 3 GB then."""
+"""Of a map or a grid: its picture takes 3 GB then."""
 
 
 @dataclass(frozen=True)
 class WorldMap:
-    """A georeferenced picture, from a GeoTIFF or in memory.
+    """A georeferenced picture, from a file or in memory.
 
     Attributes:
-        source: the file, whose pixels are read when a grid is made of them, or uint8 ``[rows, columns, 3]``.
+        source: the picture, read when a grid is made of it.
         shape: rows and columns.
         transform: affine map from (column, row) of pixel corners to the coordinate system; it may be rotated.
         crs: the coordinate system.
     """
 
-    source: Path | NDArray[np.uint8]
+    source: Source
     shape: tuple[int, int]
     transform: "Affine"
     crs: "CRS"
 
     @classmethod
-    def read(cls, path: Path) -> Self:
-        """Open a GeoTIFF of 8-bit red, green and blue, or of grey.
+    def read(cls, path: Path, reading: Reading = Reading()) -> Self:  # noqa: B008  # frozen
+        """Open a georeferenced picture.
+
+        Args:
+            path: the file.
+            reading: how it is read.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
-            InputError: the file cannot be read, has no georeference, or other samples than 8 bits.
+            InputError: the file cannot be read, see `wnn2hdl.images.open_picture`, or has no georeference.
         """
-        rasterio = _rasterio()
-        try:
-            # What rasterio would warn of, a missing georeference, is refused.
-            warnings_off = warnings.catch_warnings(
-                action="ignore", category=rasterio.errors.NotGeoreferencedWarning
+        _rasterio()
+        from affine import Affine
+        from rasterio.crs import CRS
+
+        source = open_picture(path, reading)
+        place = source.georeference
+        if place.crs is None or place.transform is None:
+            raise InputError(
+                "the map has no georeference",
+                value=path,
+                hint="give a GeoTIFF with a coordinate system and a transform",
             )
-            with warnings_off, rasterio.open(path) as dataset:
-                if dataset.crs is None or dataset.transform.is_identity:
-                    raise InputError(
-                        "the map has no georeference",
-                        value=path,
-                        hint="give a GeoTIFF with a coordinate system and a transform",
-                    )
-                if dataset.colorinterp[0].name == "palette":
-                    raise InputError(
-                        "the map holds indices of a colour table",
-                        value=path,
-                        hint="make it red, green and blue first (gdal_translate -expand rgb)",
-                    )
-                if dataset.dtypes[0] != "uint8":
-                    raise InputError(
-                        "the map's samples are not 8 bits",
-                        value=f"{path} ({dataset.dtypes[0]})",
-                        hint="scale them to bytes first (gdal_translate -ot Byte -scale)",
-                    )
-                return cls(path, dataset.shape, dataset.transform, dataset.crs)
-        except rasterio.errors.RasterioError as error:
-            raise _unreadable(path, error) from error
+        shape = source.height, source.width
+        if shape[0] * shape[1] > _MOST_PIXELS:
+            raise InputError(
+                "the map is too large",
+                value=f"{path} ({shape[1]}x{shape[0]})",
+                hint="cut the country that was flown over out of it",
+            )
+        return cls(source, shape, Affine(*place.transform), CRS.from_wkt(place.crs))
 
     @classmethod
     def of_array(cls, image: NDArray[np.uint8], transform: "Affine", crs: Any) -> Self:
@@ -95,7 +92,7 @@ class WorldMap:
         _rasterio()
         from rasterio.crs import CRS
 
-        return cls(image, (image.shape[0], image.shape[1]), transform, CRS.from_user_input(crs))
+        return cls(PlainPicture(image), (image.shape[0], image.shape[1]), transform, CRS.from_user_input(crs))
 
     @classmethod
     def of_gdal(cls, image: NDArray[np.uint8], transform: Sequence[float], epsg: int) -> Self:
@@ -245,24 +242,11 @@ class WorldMap:
 
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """The picture, uint8 ``[rows, columns, 3]``, and which of its pixels it shows."""
-        if isinstance(self.source, Path):
-            rasterio = _rasterio()
-            try:
-                with rasterio.open(self.source) as dataset:
-                    bands = [1, 2, 3] if dataset.count >= 3 else [1, 1, 1]
-                    picture = np.ascontiguousarray(np.moveaxis(dataset.read(bands), 0, -1))
-                    shown = dataset.dataset_mask() > 0
-            except rasterio.errors.RasterioError as error:
-                raise _unreadable(self.source, error.__cause__ or error) from error
-        else:
-            picture, shown = self.source, np.ones(self.shape, dtype=np.bool_)
+        picture, valid = self.source.read(0, 0, *self.shape)
+        shown = np.ones(self.shape, dtype=np.bool_) if valid is None else valid
         for plain in (0, 255):
-            shown &= ~_void(picture, plain)
+            shown = shown & ~_void(picture, plain)
         return picture, shown
-
-
-def _unreadable(path: Path, error: BaseException) -> InputError:
-    return InputError("cannot read the map", value=f"{path} ({error})")
 
 
 def _applied(
@@ -284,5 +268,4 @@ def _rasterio() -> Any:
     with extra_needed("geo", "georeferenced maps need rasterio and pyproj"):
         import pyproj  # noqa: F401  # fails here rather than later
         import rasterio
-        import rasterio.errors
     return rasterio

@@ -13,6 +13,7 @@ from pyproj import Geod
 
 from wnn2hdl.apps.navigation.world import WorldMap
 from wnn2hdl.errors import InputError
+from wnn2hdl.raster import Reading
 
 LATITUDE, LONGITUDE = 24.26, 120.72
 DEGREES = Affine(4.93e-6, 4.0e-8, LONGITUDE, 2.0e-8, -4.51e-6, LATITUDE)
@@ -29,7 +30,7 @@ def dots(shape: tuple[int, int] = (300, 400)) -> NDArray[np.uint8]:
     return np.repeat(mark[..., None], 3, axis=-1)
 
 
-def written(path: Path, image: NDArray[np.uint8], **profile: Any) -> Path:
+def written(path: Path, image: NDArray[Any], **profile: Any) -> Path:
     bands = np.moveaxis(image, -1, 0)
     size = {"count": len(bands), "height": bands.shape[1], "width": bands.shape[2]}
     with rasterio.open(path, "w", driver="GTiff", dtype=image.dtype, **size, **profile) as dataset:
@@ -103,30 +104,40 @@ def test_no_data_is_no_map(tmp_path: Path) -> None:
 
 
 def test_bad_maps_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot read the map"):
+    with pytest.raises(InputError, match="cannot read the picture"):
         WorldMap.read(tmp_path / "none.tif")
     (tmp_path / "text.tif").write_text("no map")
-    with pytest.raises(InputError, match="cannot read the map"):
+    with pytest.raises(InputError, match="not a picture"):
         WorldMap.read(tmp_path / "text.tif")
     Image.fromarray(dots()).save(tmp_path / "plain.tif")
     with pytest.raises(InputError, match="no georeference"):
         WorldMap.read(tmp_path / "plain.tif")
     deep = written(tmp_path / "deep.tif", dots().astype(np.uint16), crs="EPSG:32651", transform=METRES)
-    with pytest.raises(InputError, match="not 8 bits"):
+    with pytest.raises(InputError, match="say --scale"):
         WorldMap.read(deep)
 
 
-def test_indices_of_a_colour_table_are_refused(tmp_path: Path) -> None:
-    place = {"crs": "EPSG:32651", "transform": METRES, "photometric": "palette"}
-    path = written(tmp_path / "map.tif", dots()[..., :1], **place)
-    with pytest.raises(InputError, match=r"indices of a colour table: .*gdal_translate -expand rgb"):
-        WorldMap.read(path)
+def test_a_map_is_read_as_its_file_says(tmp_path: Path) -> None:
+    """In another order of bands, as indices of colours, or with white by 0 it is the same map."""
+    image = dots()
+    image[..., 1] = 255 - image[..., 1]
+    place = {"crs": "EPSG:32651", "transform": METRES}
+    expected = WorldMap.of_array(image, METRES, "EPSG:32651").resampled().image
+    path = written(tmp_path / "bgr.tif", image[..., ::-1], photometric="minisblack", **place)
+    with rasterio.open(path, "r+") as dataset:
+        dataset.descriptions = ("blue", "green", "red")
+    assert (WorldMap.read(path).resampled().image == expected).all()
+    deep = written(tmp_path / "deep.tif", image.astype(np.uint16) * 10, photometric="rgb", **place)
+    assert (WorldMap.read(deep, Reading(scale=(0, 2550))).resampled().image == expected).all()
+    inverted = written(tmp_path / "white.tif", 255 - dots()[..., :1], photometric="miniswhite", **place)
+    grey = WorldMap.of_array(dots(), METRES, "EPSG:32651").resampled().image
+    assert (WorldMap.read(inverted).resampled().image == grey).all()
 
 
 def test_a_damaged_map_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path / "map.tif", dots(), crs="EPSG:32651", transform=METRES)
     path.write_bytes(path.read_bytes()[:100_000])
-    with pytest.raises(InputError, match=r"cannot read the map: .*map\.tif"):
+    with pytest.raises(InputError, match=r"damaged or truncated: .*map\.tif"):
         WorldMap.read(path).resampled()
 
 
