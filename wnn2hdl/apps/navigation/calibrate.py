@@ -19,10 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.camera import MAX_TILT_DEG, Camera
+from wnn2hdl.apps.navigation.counter import time_among
 from wnn2hdl.apps.navigation.geometry import ground_patch
 from wnn2hdl.apps.navigation.grid import MapGrid
 from wnn2hdl.apps.navigation.matching import MapIndex, Window
-from wnn2hdl.apps.navigation.poses import Pose, frame_numbers
+from wnn2hdl.apps.navigation.poses import Pose
 from wnn2hdl.errors import InputError
 
 WINDOW_M = 60.0
@@ -96,10 +97,10 @@ class Calibration:
         """
         if frame in self.frames:
             return (self.cameras[self.frames.index(frame)],)
-        numbers = frame_numbers((*self.frames, frame))
-        if numbers is None:
+        times = time_among(self.frames, frame)
+        if times is None:
             return tuple(dict.fromkeys(self.cameras))
-        after = bisect(numbers[:-1], numbers[-1])
+        after = bisect(*times)
         return tuple(dict.fromkeys(self.cameras[max(after - 1, 0) : after + 1]))
 
     @property

@@ -17,6 +17,12 @@ MAX_TILT_DEG = 80.0
 _SHAPE_TOLERANCE = 0.01
 """Relative: whole pixels change the ratio of the sides a little, as from 5472x3078 to 1000x562."""
 
+WIDEST_FOCAL_SHARE = 0.2
+"""Of the frame's longer side: a lens of 136 degrees, beyond what the pinhole model can straighten."""
+
+LEAST_PRINCIPAL_SHARE = 0.2
+"""Of the frame's width and height: a principal point so near to the first pixel is an offset's or a share's."""
+
 _KEYS = frozenset(
     {
         "focal",
@@ -84,6 +90,8 @@ class Camera:
             raise InputError(
                 "the principal point is outside the frame",
                 value=f"({self.cx:g}, {self.cy:g}) of {self.width}x{self.height}",
+                hint="count cx and cy from the first pixel: an offset from the middle would be "
+                f"({(self.width - 1) / 2 + self.cx:g}, {(self.height - 1) / 2 + self.cy:g})",
             )
         if len(self.distortion) not in (0, 4, 5) or not all(map(math.isfinite, self.distortion)):
             raise InputError(
@@ -94,10 +102,40 @@ class Camera:
         for name in ("tilt_deg", "lean_deg"):
             if not abs(getattr(self, name)) <= MAX_TILT_DEG:
                 raise InputError(
-                    f"the camera's {name} is beyond {MAX_TILT_DEG:g} degrees", value=getattr(self, name)
+                    f"the camera's {name} is beyond {MAX_TILT_DEG:g} degrees",
+                    value=getattr(self, name),
+                    hint="count it from straight down, where a gimbal's pitch is -90",
                 )
         if not abs(self.twist_deg) <= 360:
             raise InputError("the camera's twist_deg is beyond 360 degrees", value=self.twist_deg)
+
+    def require_pixels(self) -> None:
+        """Raise InputError if a length is probably none in pixels, or counted from elsewhere."""
+        longer = max(self.width, self.height)
+        focal = min(self.fx, self.fy)
+        if focal < WIDEST_FOCAL_SHARE * longer:
+            share = focal <= 2
+            raise InputError(
+                "the focal length is probably a share of the frame's longer side"
+                if share
+                else "the focal length is probably in millimetres",
+                value=f"{focal:g} of a frame of {self.width}x{self.height} pixels",
+                hint=f"give pixels: {focal * longer:g}"
+                if share
+                else f"give pixels: {focal:g} times {longer} over the sensor's longer side in millimetres",
+            )
+        for name, at, length in (("cx", self.cx, self.width), ("cy", self.cy, self.height)):
+            if at >= LEAST_PRINCIPAL_SHARE * length:
+                continue
+            middle = (length - 1) / 2
+            share = 0.3 <= at <= 0.7
+            raise InputError(
+                f"{name} is probably a share of the frame"
+                if share
+                else f"{name} is probably an offset from the frame's middle",
+                value=f"{at:g} of {length} pixels",
+                hint=f"count it from the first pixel: {at * length - 0.5 if share else middle + at:g}",
+            )
 
     @property
     def matrix(self) -> NDArray[np.float64]:
@@ -118,7 +156,7 @@ class Camera:
 
         Raises:
             InputError: the file cannot be read, is no TOML, lacks a key or has one too many, or a value is
-                of the wrong kind or out of range.
+                of the wrong kind, out of range, or probably in another unit.
         """
         try:
             table = tomllib.loads(path.read_text(encoding="utf-8")).get("camera")
@@ -162,7 +200,9 @@ class Camera:
                 pinhole = {key: getattr(middle, key) for key in ("fx", "fy", "cx", "cy")}
                 numbers = {**pinhole, **numbers}
             lens = tuple(float(value) for value in distortion)
-            return cls(**numbers, distortion=lens, stabilised=stabilised)
+            camera = cls(**numbers, distortion=lens, stabilised=stabilised)
+            camera.require_pixels()
+            return camera
         except InputError as error:
             raise InputError(
                 f"the camera {path}: {error.fault}", value=error.value, hint=error.hint

@@ -1,6 +1,5 @@
 """The map: a georeferenced picture, laid out as the grid that matching happens on."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,11 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from wnn2hdl.apps.navigation.grid import MapGrid, local_crs, transformer
 from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.ir.window import SIDE
+from wnn2hdl.raster import RasterReader, Reading
 
 if TYPE_CHECKING:
     from affine import Affine
     from pyproj import Transformer
-    from rasterio.crs import CRS
+
+AS_STATED = Reading()
+"""Bands and values as the file states them."""
 
 _WARP_TOLERANCE_PX = 0.01
 """How far GDAL may miss by interpolating coordinates instead of computing each."""
@@ -35,86 +37,65 @@ class WorldMap:
     """A georeferenced picture, from a GeoTIFF or in memory.
 
     Attributes:
-        source: the file, whose pixels are read when a grid is made of them, or uint8 ``[rows, columns, 3]``.
+        source: the file's reader, whose pixels are read when a grid is made of them, or uint8
+            ``[rows, columns, 3]``.
         shape: rows and columns.
         transform: affine map from (column, row) of pixel corners to the coordinate system; it may be rotated.
-        crs: the coordinate system.
+        crs: the coordinate system, as anything PROJ takes: WKT, ``"EPSG:4326"``.
     """
 
-    source: Path | NDArray[np.uint8]
+    source: RasterReader | NDArray[np.uint8]
     shape: tuple[int, int]
     transform: "Affine"
-    crs: "CRS"
+    crs: str
 
     @classmethod
-    def read(cls, path: Path) -> Self:
-        """Open a GeoTIFF of 8-bit red, green and blue, or of grey.
+    def read(cls, path: Path, reading: Reading = AS_STATED) -> Self:
+        """Open a georeferenced raster, by the same rules as every other: `wnn2hdl.raster.RasterReader`.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
-            InputError: the file cannot be read, has no georeference, or other samples than 8 bits.
+            InputError: the file cannot be read, has no georeference, or does not say what its samples are.
         """
         rasterio = _rasterio()
-        try:
-            # What rasterio would warn of, a missing georeference, is refused.
-            warnings_off = warnings.catch_warnings(
-                action="ignore", category=rasterio.errors.NotGeoreferencedWarning
+        reader = RasterReader(path, reading)
+        reader.require_upright()
+        place = reader.georeference
+        if place.crs is None or place.transform is None:
+            raise InputError(
+                "the map has no georeference",
+                value=path,
+                hint="give a GeoTIFF with a coordinate system and a transform",
             )
-            with warnings_off, rasterio.open(path) as dataset:
-                if dataset.crs is None or dataset.transform.is_identity:
-                    raise InputError(
-                        "the map has no georeference",
-                        value=path,
-                        hint="give a GeoTIFF with a coordinate system and a transform",
-                    )
-                if dataset.colorinterp[0].name == "palette":
-                    raise InputError(
-                        "the map holds indices of a colour table",
-                        value=path,
-                        hint="make it red, green and blue first (gdal_translate -expand rgb)",
-                    )
-                if dataset.dtypes[0] != "uint8":
-                    raise InputError(
-                        "the map's samples are not 8 bits",
-                        value=f"{path} ({dataset.dtypes[0]})",
-                        hint="scale them to bytes first (gdal_translate -ot Byte -scale)",
-                    )
-                return cls(path, dataset.shape, dataset.transform, dataset.crs)
-        except rasterio.errors.RasterioError as error:
-            raise _unreadable(path, error) from error
+        return cls(reader, (reader.height, reader.width), rasterio.Affine(*place.transform), place.crs)
 
     @classmethod
-    def of_array(cls, image: NDArray[np.uint8], transform: "Affine", crs: Any) -> Self:
+    def of_array(cls, image: NDArray[np.uint8], transform: Sequence[float], crs: str) -> Self:
         """A map in memory.
 
         Args:
             image: uint8 ``[rows, columns, 3]``.
-            transform: affine map from (column, row) of pixel corners, as rasterio's.
-            crs: the coordinate system, as anything rasterio takes: ``"EPSG:4326"``.
+            transform: coefficients a … f of an affine map from (column, row) of pixel corners, as rasterio's.
+            crs: the coordinate system.
         """
-        _rasterio()
-        from rasterio.crs import CRS
+        rasterio = _rasterio()
+        return cls(image, (image.shape[0], image.shape[1]), rasterio.Affine(*transform[:6]), crs)
 
-        return cls(image, (image.shape[0], image.shape[1]), transform, CRS.from_user_input(crs))
-
-    @classmethod
-    def of_gdal(cls, image: NDArray[np.uint8], transform: Sequence[float], epsg: int) -> Self:
-        """As `of_array`, of plain numbers: the affine map's six coefficients a … f, and an EPSG code."""
-        _rasterio()
-        from affine import Affine
-
-        return cls.of_array(image, Affine(*transform), f"EPSG:{epsg}")
+    @property
+    def note(self) -> str:
+        """What had to be assumed about the file's bands and pages; empty if nothing."""
+        return self.source.note if isinstance(self.source, RasterReader) else ""
 
     @cached_property
     def _geographic(self) -> "Transformer":
         from pyproj.exceptions import ProjError
 
         try:
-            return transformer(self.crs.to_wkt())
+            return transformer(self.crs)
         except ProjError as error:
             raise InputError(
                 "the map's coordinate system tells no latitudes and longitudes",
-                value=self.crs.to_string(),
+                value=self.crs,
                 hint="give a map in a geographic or projected coordinate system, as UTM",
             ) from error
 
@@ -239,30 +220,21 @@ class WorldMap:
         if not np.isfinite(positions).all():
             raise InputError(
                 "the map is not on the earth",
-                value=f"{self.crs.to_string()}, {tuple(self.transform)[:6]}",
+                value=f"{self.crs}, {tuple(self.transform)[:6]}",
                 hint="correct its coordinate system or its transform",
             )
 
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """The picture, uint8 ``[rows, columns, 3]``, and which of its pixels it shows."""
-        if isinstance(self.source, Path):
-            rasterio = _rasterio()
-            try:
-                with rasterio.open(self.source) as dataset:
-                    bands = [1, 2, 3] if dataset.count >= 3 else [1, 1, 1]
-                    picture = np.ascontiguousarray(np.moveaxis(dataset.read(bands), 0, -1))
-                    shown = dataset.dataset_mask() > 0
-            except rasterio.errors.RasterioError as error:
-                raise _unreadable(self.source, error.__cause__ or error) from error
+        if isinstance(self.source, RasterReader):
+            read, valid = self.source.read(0, 0, *self.shape)
+            picture = np.ascontiguousarray(read)
+            shown = np.ones(self.shape, dtype=np.bool_) if valid is None else valid
         else:
             picture, shown = self.source, np.ones(self.shape, dtype=np.bool_)
         for plain in (0, 255):
             shown &= ~_void(picture, plain)
         return picture, shown
-
-
-def _unreadable(path: Path, error: BaseException) -> InputError:
-    return InputError("cannot read the map", value=f"{path} ({error})")
 
 
 def _applied(
@@ -284,5 +256,4 @@ def _rasterio() -> Any:
     with extra_needed("geo", "georeferenced maps need rasterio and pyproj"):
         import pyproj  # noqa: F401  # fails here rather than later
         import rasterio
-        import rasterio.errors
     return rasterio

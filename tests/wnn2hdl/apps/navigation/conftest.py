@@ -52,7 +52,7 @@ class Flying:
 
         recording = Recording(
             "rendered",
-            WorldMap.of_gdal(flight.map_image, flight.transform, flight.epsg),
+            WorldMap.of_array(flight.map_image, flight.transform, f"EPSG:{flight.epsg}"),
             Camera.of_focal(flight.camera.focal_px, 260, 150),
             scored,
             read,
