@@ -10,7 +10,7 @@ tilt that is constant over stretches of the flight.
 """
 
 from bisect import bisect
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -20,17 +20,13 @@ from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.camera import MAX_TILT_DEG, Camera
 from wnn2hdl.apps.navigation.counter import time_among
-from wnn2hdl.apps.navigation.geometry import ground_patch
+from wnn2hdl.apps.navigation.explain import require_fit, require_stated_meaning
 from wnn2hdl.apps.navigation.grid import MapGrid
-from wnn2hdl.apps.navigation.matching import MapIndex, Window
+from wnn2hdl.apps.navigation.matching import MapIndex
 from wnn2hdl.apps.navigation.poses import Pose
+from wnn2hdl.apps.navigation.sights import HEADINGS_DEG, WINDOW_M, Lookout, Sight, steps
 from wnn2hdl.errors import InputError
-
-WINDOW_M = 60.0
-"""How far a match may be from the truth: as much as 27 degrees of tilt make at 120 m."""
-
-HEADINGS_DEG = tuple(range(-60, 61, 6))
-"""Errors of the logged heading that are tried; a match survives 3 degrees more or less."""
+from wnn2hdl.progress import Progress
 
 HEADING_TOLERANCE_DEG = 6.0
 """Headings are searched if half of the log's or more are this much off their median error."""
@@ -46,28 +42,6 @@ STRETCH_GAIN = 0.2
 """Another stretch must take away this part of the remaining error."""
 
 _ROUNDS = 2
-
-
-@dataclass(frozen=True)
-class Sight:
-    """A calibration frame's match.
-
-    Attributes:
-        ahead_m: the match is so far ahead of the truth, along the heading that fits best.
-        right_m: so far to the right of it.
-        heading_error_deg: what has to be added to the logged heading.
-        score: normalised correlation of the grey levels.
-    """
-
-    ahead_m: float
-    right_m: float
-    heading_error_deg: float
-    score: float
-
-    @property
-    def miss_m(self) -> float:
-        """Distance between match and truth."""
-        return float(np.hypot(self.ahead_m, self.right_m))
 
 
 @dataclass(frozen=True)
@@ -132,7 +106,7 @@ def calibrate(
     frames: Sequence[NDArray[np.uint8]],
     poses: Sequence[Pose],
     camera: Camera,
-    progress: Callable[[int, int], None],
+    progress: Progress,
 ) -> Calibration:
     """Fit gimbal, focal length, twist, lean and tilt.
 
@@ -142,10 +116,11 @@ def calibrate(
         frames: uint8 ``[height, width]`` each, grey.
         poses: of the frames, at least `MIN_FRAMES`, in the order of flight.
         camera: first guess; its focal length good to 10 %.
-        progress: told how many steps of how many are done.
+        progress: told how many frames of how many have been looked for.
 
     Raises:
-        InputError: too few frames, or most of them show nothing that is on the map.
+        InputError: too few frames, or most of them show nothing that is on the map; the log or the camera is
+            probably given in another convention.
     """
     if len(poses) < MIN_FRAMES:
         raise InputError(
@@ -153,36 +128,33 @@ def calibrate(
             value=len(poses),
             hint="calibrate on more frames",
         )
-    fit = _Fit(grid, MapIndex(grey_map, grid.valid), list(frames), list(poses))
-    done = iter(range(1, 100))
-    total = 4 + 2 * _ROUNDS
+    lookout = Lookout(grid, MapIndex(grey_map, grid.valid), frames, poses, lambda: None)
+    require_stated_meaning(lookout, camera, progress)
+    passes = 5 + _ROUNDS * (1 + len(SCALES))
+    fit = _Fit(replace(lookout, looked=steps(progress, "calibration", passes * len(poses))))
 
-    sights = fit.sights([camera] * len(poses), HEADINGS_DEG, WINDOW_M)
+    sights = fit.lookout.sights([camera] * len(poses), HEADINGS_DEG)
     errors = np.array([sight.heading_error_deg for sight in sights if sight])
     typical = float(np.median(np.abs(errors - np.median(errors)))) if errors.size else 0.0
     free_heading = typical >= HEADING_TOLERANCE_DEG
     logged = HEADINGS_DEG if free_heading else (0.0,)
-    progress(next(done), total)
     guesses = []
     for stabilised in (False, True):
         cameras = [replace(camera, stabilised=stabilised)] * len(poses)
-        sights = fit.sights(cameras, logged, WINDOW_M)
+        sights = fit.lookout.sights(cameras, logged)
         guesses.append((fit.spread(sights), cameras, sights))
-        progress(next(done), total)
     before = guesses[camera.stabilised][2]
     _, cameras, _ = min(guesses, key=lambda each: each[0])
     for _ in range(_ROUNDS):
-        sights = fit.sights(cameras, HEADINGS_DEG if free_heading else (-3.0, 0.0, 3.0), WINDOW_M)
+        sights = fit.lookout.sights(cameras, HEADINGS_DEG if free_heading else (-3.0, 0.0, 3.0))
         cameras = fit.mounted(cameras, sights)
-        progress(next(done), total)
         headings = [sight.heading_error_deg if sight and free_heading else 0.0 for sight in sights]
         cameras = fit.scaled(cameras, headings)
-        progress(next(done), total)
-    cameras = fit.mounted(cameras, fit.sights(cameras, logged, WINDOW_M))
-    after = fit.sights(cameras, logged, WINDOW_M)
-    progress(total, total)
+    cameras = fit.mounted(cameras, fit.lookout.sights(cameras, logged))
+    after = fit.lookout.sights(cameras, logged)
+    require_fit(after)
     return Calibration(
-        tuple(pose.frame for pose in fit.poses),
+        tuple(pose.frame for pose in poses),
         tuple(cameras),
         float(np.ceil(typical / 6) * 18) if free_heading else 0.0,
         tuple(sight for sight in before if sight),
@@ -192,34 +164,7 @@ def calibrate(
 
 @dataclass(frozen=True)
 class _Fit:
-    grid: MapGrid
-    index: MapIndex
-    frames: list[NDArray[np.uint8]]
-    poses: list[Pose]
-
-    def sight(self, number: int, camera: Camera, headings: Sequence[float], window_m: float) -> Sight | None:
-        """The best match of a frame over some headings."""
-        pose, best = self.poses[number], None
-        row, column = (float(axis) for axis in self.grid.to_pixel(pose.latitude_deg, pose.longitude_deg))
-        for error in headings:
-            turned = replace(pose, yaw_deg=pose.yaw_deg + error)
-            patch = ground_patch(self.frames[number], turned, camera, self.grid.gsd_m)
-            place = row - patch.nadir_row, column - patch.nadir_col
-            window = Window.around(*place, window_m / self.grid.gsd_m)
-            match = self.index.search(patch.image, patch.valid, "ncc", window)
-            if match is None or (best is not None and match.score <= best.score):
-                continue
-            north, east = (place[0] - match.row) * patch.gsd_m, (match.col - place[1]) * patch.gsd_m
-            course = np.radians(turned.yaw_deg + camera.twist_deg)
-            ahead = north * np.cos(course) + east * np.sin(course)
-            right = east * np.cos(course) - north * np.sin(course)
-            best = Sight(float(ahead), float(right), float(error), match.score)
-        return best
-
-    def sights(
-        self, cameras: Sequence[Camera], headings: Sequence[float], window_m: float
-    ) -> list[Sight | None]:
-        return [self.sight(i, camera, headings, window_m) for i, camera in enumerate(cameras)]
+    lookout: Lookout
 
     def spread(self, sights: Sequence[Sight | None]) -> float:
         """What no mount explains: how far, typically, matches are from the middle of their stretch."""
@@ -241,7 +186,7 @@ class _Fit:
         for i in seen:
             sight = sights[i]
             assert sight is not None
-            height = self.poses[i].height_m
+            height = self.lookout.poses[i].height_m
             tilts.append(cameras[i].tilt_deg + np.degrees(np.arctan2(sight.ahead_m, height)))
             leans.append(cameras[i].lean_deg - np.degrees(np.arctan2(sight.right_m, height)))
             twists.append(cameras[i].twist_deg + sight.heading_error_deg)
@@ -258,7 +203,7 @@ class _Fit:
         scores = []
         for scale in SCALES:
             sights = [
-                self.sight(
+                self.lookout.sight(
                     i, replace(camera, fx=camera.fx * scale, fy=camera.fy * scale), [heading], WINDOW_M / 3
                 )
                 for i, (camera, heading) in enumerate(zip(cameras, headings, strict=True))
@@ -284,7 +229,8 @@ def _steps(values: NDArray[np.float64]) -> NDArray[np.float64]:
     def cost(bounds: list[int]) -> float:
         return float(np.abs(values - model(bounds)).sum())
 
-    while True:
+    # Each round adds a bound; there is room for so many.
+    for _ in range(len(values) // STRETCH_FRAMES):
         finer = [
             sorted([*bounds, cut])
             for i, j in pairwise(bounds)
@@ -292,8 +238,9 @@ def _steps(values: NDArray[np.float64]) -> NDArray[np.float64]:
         ]
         best = min(finer, key=cost, default=bounds)
         if cost(best) >= (1 - STRETCH_GAIN) * cost(bounds):
-            return model(bounds)
+            break
         bounds = best
+    return model(bounds)
 
 
 def _summary(sights: Sequence[Sight]) -> dict[str, float]:

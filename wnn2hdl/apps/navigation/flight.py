@@ -28,6 +28,10 @@ from wnn2hdl.progress import Progress, reported
 
 T = TypeVar("T")
 
+MOST_ACROSS = 300
+"""Calibration's patches have about so many pixels across at most: their searches take no longer, however high
+the flight is, or is said to be."""
+
 COARSER = 2
 """Calibration matches on a grid this much coarser: it needs metres, not half metres."""
 
@@ -156,15 +160,18 @@ def run_flight(
 
 def calibrated(recording: Recording, calibrating: Sequence[Pose], progress: Progress) -> Calibration:
     """The camera as fitted on some frames."""
-    coarse = recording.world.resampled(COARSER * recording.world.gsd_m)
+    camera = recording.camera
+    height_m = float(np.median([pose.height_m for pose in calibrating]))
+    across_m = height_m * max(camera.width / camera.fx, camera.height / camera.fy)
+    coarse = recording.world.resampled(max(COARSER * recording.world.gsd_m, across_m / MOST_ACROSS))
     frames = [grey(recording.read(pose)) for pose in calibrating]
     return calibrate(
         coarse,
         grey(coarse.image),
         frames,
         calibrating,
-        recording.camera,
-        lambda done, total: progress("calibration", done, total),
+        camera,
+        progress,
     )
 
 

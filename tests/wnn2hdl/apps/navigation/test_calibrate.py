@@ -62,7 +62,7 @@ def fitted(
     grid: MapGrid, cameras: list[Camera], poses: list[Pose], logged: list[Pose] | None = None
 ) -> Calibration:
     frames = [photographed(grid, camera, pose) for camera, pose in zip(cameras, poses, strict=True)]
-    return calibrate(grid, grid.image[..., 0], frames, logged or poses, GUESS, lambda done, total: None)
+    return calibrate(grid, grid.image[..., 0], frames, logged or poses, GUESS, lambda *_: None)
 
 
 def test_finds_a_strapped_camera_again() -> None:
@@ -126,7 +126,7 @@ def test_too_little_to_calibrate_on_is_refused() -> None:
             [np.zeros((150, 200), np.uint8)] * 4,
             away,
             GUESS,
-            lambda done, total: None,
+            lambda *_: None,
         )
 
 
