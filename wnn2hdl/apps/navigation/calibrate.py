@@ -11,9 +11,9 @@ tilt that is constant over stretches of the flight.
 
 from bisect import bisect
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,35 @@ _ROUNDS = 2
 
 
 @dataclass(frozen=True)
+class Fit:
+    """How well calibration frames match the map where they were.
+
+    Attributes:
+        matched: frames that match at all.
+        mean_miss_m: mean distance between match and truth.
+        median_miss_m: its median.
+        mean_score: mean normalised correlation of the grey levels.
+    """
+
+    matched: int
+    mean_miss_m: float
+    median_miss_m: float
+    mean_score: float
+
+    @classmethod
+    def of(cls, sights: Sequence[Sight | None]) -> Self:
+        """Of frames of which at least one matches."""
+        seen = [sight for sight in sights if sight]
+        misses = [sight.miss_m for sight in seen]
+        return cls(
+            len(seen),
+            float(np.mean(misses)),
+            float(np.median(misses)),
+            float(np.mean([sight.score for sight in seen])),
+        )
+
+
+@dataclass(frozen=True)
 class Calibration:
     """The fitted camera.
 
@@ -53,15 +82,15 @@ class Calibration:
         cameras: the camera at each of these frames; they differ in tilt only.
         heading_search_deg: headings up to this much off the logged one have to be searched; 0 if the log
             is good.
-        before: the frames' matches with the camera as given.
+        before: how the frames match with the camera as given.
         after: the same with the fitted one.
     """
 
     frames: tuple[str, ...]
     cameras: tuple[Camera, ...]
     heading_search_deg: float
-    before: tuple[Sight, ...]
-    after: tuple[Sight, ...]
+    before: Fit
+    after: Fit
 
     def cameras_at(self, frame: str) -> tuple[Camera, ...]:
         """The cameras that may have taken a frame: of the stretch it lies in; between two, of either.
@@ -95,8 +124,8 @@ class Calibration:
             "twist_deg": camera.twist_deg,
             "tilts": [{"from_frame": frame, "tilt_deg": tilt} for frame, tilt in self.stretches],
             "heading_search_deg": self.heading_search_deg,
-            "before": _summary(self.before),
-            "after": _summary(self.after),
+            "before": asdict(self.before),
+            "after": asdict(self.after),
         }
 
 
@@ -131,7 +160,7 @@ def calibrate(
     lookout = Lookout(grid, MapIndex(grey_map, grid.valid), frames, poses, lambda: None)
     require_stated_meaning(lookout, camera, progress)
     passes = 5 + _ROUNDS * (1 + len(SCALES))
-    fit = _Fit(replace(lookout, looked=steps(progress, "calibration", passes * len(poses))))
+    fit = _Fitting(replace(lookout, looked=steps(progress, "calibration", passes * len(poses))))
 
     sights = fit.lookout.sights([camera] * len(poses), HEADINGS_DEG)
     errors = np.array([sight.heading_error_deg for sight in sights if sight])
@@ -157,13 +186,13 @@ def calibrate(
         tuple(pose.frame for pose in poses),
         tuple(cameras),
         float(np.ceil(typical / 6) * 18) if free_heading else 0.0,
-        tuple(sight for sight in before if sight),
-        tuple(sight for sight in after if sight),
+        Fit.of(before),
+        Fit.of(after),
     )
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _Fitting:
     lookout: Lookout
 
     def spread(self, sights: Sequence[Sight | None]) -> float:
@@ -241,12 +270,3 @@ def _steps(values: NDArray[np.float64]) -> NDArray[np.float64]:
             break
         bounds = best
     return model(bounds)
-
-
-def _summary(sights: Sequence[Sight]) -> dict[str, float]:
-    return {
-        "matched": len(sights),
-        "mean_miss_m": float(np.mean([sight.miss_m for sight in sights])),
-        "median_miss_m": float(np.median([sight.miss_m for sight in sights])),
-        "mean_score": float(np.mean([sight.score for sight in sights])),
-    }

@@ -21,9 +21,9 @@ WIDEST_FOCAL_SHARE = 0.2
 """Of the frame's longer side: a lens of 136 degrees, beyond what the pinhole model can straighten."""
 
 LEAST_PRINCIPAL_SHARE = 0.2
-"""Of the frame's width and height: a principal point so near to the first pixel is an offset's or a share's."""
+"""Of the frame's width and height: so near to the first pixel, a principal point is an offset or a share."""
 
-_KEYS = frozenset(
+KEYS = frozenset(
     {
         "focal",
         "fx",
@@ -39,6 +39,8 @@ _KEYS = frozenset(
         "stabilised",
     }
 )
+"""Of the table in a camera's file."""
+
 _FORM = "write [camera] with focal (or fx, fy, cx, cy), width and height, in pixels"
 
 
@@ -166,11 +168,19 @@ class Camera:
             raise InputError("the camera is no TOML", value=f"{path} ({error})", hint=_FORM) from error
         if not isinstance(table, dict):
             raise InputError("no camera in the file", value=path, hint=_FORM)
-        return cls._of_table(table, path)
+        camera = cls.of_table(table, path)
+        try:
+            camera.require_pixels()
+        except InputError as error:
+            raise InputError(
+                f"the camera {path}: {error.fault}", value=error.value, hint=error.hint
+            ) from None
+        return camera
 
     @classmethod
-    def _of_table(cls, table: dict[str, Any], path: Path) -> Self:
-        unknown = sorted(table.keys() - _KEYS)
+    def of_table(cls, table: dict[str, Any], path: Path) -> Self:
+        """A camera of the keys of `read`; its errors, too, are those of `read`, and name the file."""
+        unknown = sorted(table.keys() - KEYS)
         if unknown:
             raise InputError(f"the camera {path} has an unknown key", value=", ".join(unknown), hint=_FORM)
         needed = {"focal"} if "focal" in table else {"fx", "fy", "cx", "cy"}
@@ -200,9 +210,7 @@ class Camera:
                 pinhole = {key: getattr(middle, key) for key in ("fx", "fy", "cx", "cy")}
                 numbers = {**pinhole, **numbers}
             lens = tuple(float(value) for value in distortion)
-            camera = cls(**numbers, distortion=lens, stabilised=stabilised)
-            camera.require_pixels()
-            return camera
+            return cls(**numbers, distortion=lens, stabilised=stabilised)
         except InputError as error:
             raise InputError(
                 f"the camera {path}: {error.fault}", value=error.value, hint=error.hint

@@ -33,6 +33,10 @@ ALONG_DEG = 30.0
 """A heading is along the course if it is less than this off, as wind and turns make it."""
 
 
+FEW, MOST = 0.4, 0.75
+"""Shares of the legs: few along the stated headings and most along those of another convention decide."""
+
+
 @dataclass(frozen=True)
 class Convention:
     """Another meaning of a log's numbers.
@@ -112,12 +116,12 @@ def require_aircraft_angles(poses: Sequence[Pose]) -> None:
         return
     courses = np.array([float(course_deg(*_place(one), *_place(other))) for one, other in legs])
     # Of a flight straight on, any heading may be meant: the camera may look anywhere.
-    if abs(np.exp(1j * np.radians(courses)).mean()) > 0.9 or _share_along(courses, legs) > 0.25:
+    if abs(np.exp(1j * np.radians(courses)).mean()) > 0.9 or _share_along(courses, legs) > FEW:
         return
     others = [COUNTER_CLOCKWISE, FROM_EAST, *([RADIANS] if may_be_radians(poses) else [])]
     for other in others:
         share = _share_along(courses, [(other.read(one), other.read(two)) for one, two in legs])
-        if share >= 0.75:
+        if share >= MOST:
             raise InputError(
                 f"{other.fault}, to judge by the positions",
                 value=f"{share:.0%} of the legs are flown along such headings, and "
@@ -154,9 +158,7 @@ def require_over_map(poses: Sequence[Pose], world: WorldMap) -> None:
         "the latitude probably lacks its sign: south is negative": (-latitude, longitude),
         "both probably lack their signs: south and west are negative": (-latitude, -longitude),
     }
-    meant = [
-        meaning for meaning, (north, east) in meanings.items() if abs(north) <= 90 and near(north, east)
-    ]
+    meant = [meaning for meaning, (north, east) in meanings.items() if abs(north) <= 90 and near(north, east)]
     raise InputError(
         "no logged position is on the map",
         value=f"latitude {latitude:g}, longitude {longitude:g}",

@@ -1,9 +1,9 @@
-"""Which convention a log is written in, told by calibration frames: where were they, if it meant this or that?
+"""Which convention is a log written in? Calibration frames tell, laid out as if it meant this or that.
 
 With the right meaning, matches lie beside the truth by the same distance ahead and to the right, which the
-camera's unknown tilt makes; with a wrong one they lie anywhere in the window that is searched. So meanings are
-compared by how many frames agree, weighted by how far their matches stand out. Another meaning than the stated one is
-never taken over, but named.
+camera's unknown tilt makes; with a wrong one they lie anywhere in the window that is searched. So meanings
+are compared by how many frames agree, weighted by how far their matches stand out. Another meaning than the
+stated one is never taken over, but named.
 """
 
 from collections.abc import Sequence
@@ -73,7 +73,10 @@ def require_stated_meaning(lookout: Lookout, camera: Camera, progress: Progress)
     """
     frames = len(lookout.poses)
     headings, scales = _headings(lookout.poses), _scales(lookout.poses, camera)
-    tried = [(0.0,), (*headings, *scales)], [HEADINGS_DEG, headings]
+    tried: list[tuple[tuple[float, ...], tuple[Convention, ...]]] = [
+        ((0.0,), (*headings, *scales)),
+        (HEADINGS_DEG, headings),
+    ]
     most = frames * sum(2 + len(others) for _, others in tried)
     lookout = replace(lookout, looked=steps(progress, "conventions", most))
     for errors, others in tried:
@@ -87,7 +90,12 @@ def require_stated_meaning(lookout: Lookout, camera: Camera, progress: Progress)
         if stated.agreeing >= MOST * frames:
             break
         found = [
-            (_evidence(replace(lookout, poses=[other.read(pose) for pose in lookout.poses]), camera, errors), other)
+            (
+                _evidence(
+                    replace(lookout, poses=[other.read(pose) for pose in lookout.poses]), camera, errors
+                ),
+                other,
+            )
             for other in others
         ]
         best, other = max(found, key=lambda pair: pair[0].weight)
@@ -114,14 +122,7 @@ def require_fit(sights: Sequence[Sight | None]) -> None:
 
 def _headings(poses: Sequence[Pose]) -> tuple[Convention, ...]:
     """Other meanings of the angles."""
-    mounts = tuple(
-        Convention(
-            f"the camera is mounted with image-up to the {side}",
-            f"give --camera with twist_deg = {turn}",
-            lambda pose, turn=turn: replace(pose, yaw_deg=pose.yaw_deg + turn),
-        )
-        for side, turn in (("right", 90), ("back", 180), ("left", -90))
-    )
+    mounts = (_mount("right", 90), _mount("back", 180), _mount("left", -90))
     signs = (
         Convention(
             "pitch_deg counts nose down",
@@ -136,6 +137,14 @@ def _headings(poses: Sequence[Pose]) -> tuple[Convention, ...]:
     )
     radians = (RADIANS,) if may_be_radians(poses) else ()
     return (COUNTER_CLOCKWISE, FROM_EAST, *mounts, *signs, *radians)
+
+
+def _mount(side: str, twist_deg: float) -> Convention:
+    return Convention(
+        f"the camera is mounted with image-up to the {side}",
+        f"give --camera with twist_deg = {twist_deg:g}",
+        lambda pose: replace(pose, yaw_deg=pose.yaw_deg + twist_deg),
+    )
 
 
 def _scales(poses: Sequence[Pose], camera: Camera) -> tuple[Convention, ...]:

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from wnn2hdl.apps.navigation.counter import frame_times
 from wnn2hdl.apps.navigation.distance import geodesic_m, great_circle_m
 from wnn2hdl.apps.navigation.grid import MapGrid
 from wnn2hdl.apps.navigation.matching import Acceptance, Match, choose_threshold, peak_weights
 from wnn2hdl.apps.navigation.navigator import Located
-from wnn2hdl.apps.navigation.counter import frame_times
 from wnn2hdl.apps.navigation.poses import Pose
 from wnn2hdl.apps.navigation.results import FAR_M, FrameFix
 from wnn2hdl.apps.navigation.track import Fix, follow

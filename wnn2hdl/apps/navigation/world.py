@@ -1,8 +1,10 @@
 """The map: a georeferenced picture, laid out as the grid that matching happens on."""
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -70,7 +72,7 @@ class WorldMap:
         return cls(reader, (reader.height, reader.width), rasterio.Affine(*place.transform), place.crs)
 
     @classmethod
-    def of_array(cls, image: NDArray[np.uint8], transform: Sequence[float], crs: str) -> Self:
+    def of_array(cls, image: NDArray[np.uint8], transform: Iterable[float], crs: str) -> Self:
         """A map in memory.
 
         Args:
@@ -79,7 +81,7 @@ class WorldMap:
             crs: the coordinate system.
         """
         rasterio = _rasterio()
-        return cls(image, (image.shape[0], image.shape[1]), rasterio.Affine(*transform[:6]), crs)
+        return cls(image, (image.shape[0], image.shape[1]), rasterio.Affine(*islice(transform, 6)), crs)
 
     @property
     def note(self) -> str:
@@ -136,6 +138,18 @@ class WorldMap:
                 hint="give it a transform that can be inverted",
             )
         return float(np.sqrt(area))
+
+    def digest(self) -> str:
+        """SHA-256 of the pixels, which of them are shown, and where they lie: 64 hexadecimal digits.
+
+        Raises:
+            InputError: the map cannot be read.
+        """
+        picture, shown = self._pixels()
+        found = hashlib.sha256(repr((self.shape, tuple(self.transform), self.crs)).encode())
+        found.update(np.ascontiguousarray(picture).data)
+        found.update(np.packbits(shown).data)
+        return found.hexdigest()
 
     def resampled(self, gsd_m: float | None = None) -> MapGrid:
         """Lay the map on a north-up metric grid.

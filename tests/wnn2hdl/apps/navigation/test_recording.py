@@ -67,7 +67,7 @@ def test_a_frame_of_another_shape_is_named_at_once(folder: Path, tmp_path: Path)
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_missing_files_are_refused(folder: Path, tmp_path: Path) -> None:
     poses = poses_of(folder)
-    with pytest.raises(InputError, match="cannot read the picture: .*map.tif"):
+    with pytest.raises(InputError, match=r"cannot read the picture: .*map\.tif"):
         Recording.of_files(tmp_path / "map.tif", frame_files(poses, folder / "frames"), 120.0)
     with pytest.raises(InputError, match="cannot read the picture"):
         Recording.of_files(folder / "map.tif", {poses[0]: tmp_path / "none.jpg"}, 120.0)

@@ -30,7 +30,7 @@ def dots(shape: tuple[int, int] = (300, 400)) -> NDArray[np.uint8]:
     return np.repeat(mark[..., None], 3, axis=-1)
 
 
-def written(path: Path, image: NDArray[np.uint8], **profile: Any) -> Path:
+def written(path: Path, image: NDArray[Any], **profile: Any) -> Path:
     bands = np.moveaxis(image, -1, 0)
     size = {"count": len(bands), "height": bands.shape[1], "width": bands.shape[2]}
     with rasterio.open(path, "w", driver="GTiff", dtype=image.dtype, **size, **profile) as dataset:
