@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import product
 from typing import TypeVar
 
 import cv2
@@ -103,9 +104,10 @@ def run_flight(
     calibration = known.calibration if known else None
     if teachers:
         calibration = calibrated(recording, teachers, progress)
-    if heading_deg is None:
+    if heading_deg is None and known:
+        heading_deg = known.conditions.tolerance.heading_deg
+    elif heading_deg is None:
         heading_deg = calibration.heading_search_deg if calibration else 0.0
-        heading_deg = known.conditions.tolerance.heading_deg if known else heading_deg
     tolerance = PoseTolerance(heading_deg, scale)
 
     def cameras_at(pose: Pose) -> tuple[Camera, ...]:
@@ -131,14 +133,11 @@ def run_flight(
         return navigator.locate(recording.read(pose), pose, cameras_at(pose), windows, tolerance)
 
     proving = list(_in_parallel(locate, teachers, jobs, "thresholds", progress))
+    places = product(searches, (method.key for method in methods))
     acceptances = (
         known.acceptances
         if known
-        else {
-            (kind, method.key): accepted(grid, teachers, [one[kind, method.key] for one in proving])
-            for kind in searches
-            for method in methods
-        }
+        else {place: accepted(grid, teachers, [one[place] for one in proving]) for place in places}
     )
     found = list(_in_parallel(locate, recording.poses, jobs, "frames", progress))
     if not any(one[place] for one in found for place in one):
@@ -151,21 +150,30 @@ def run_flight(
         SearchResult(kind, half, _rows(grid, recording.poses, found, methods, acceptances, kind, half))
         for kind, half in searches.items()
     )
+    result = _result(recording, grid, calibration, searched)
+    learned = known
+    if calibration and conditions and not known:
+        learned = Learned(conditions, teachers, calibration, weightless, dict(searches), acceptances)
+    return FlightRun(result, grid, methods, learned)
+
+
+def _result(
+    recording: Recording,
+    grid: MapGrid,
+    calibration: Calibration | None,
+    searches: tuple[SearchResult, ...],
+) -> FlightResult:
     camera = calibration.cameras[0] if calibration else recording.camera
-    result = FlightResult(
+    return FlightResult(
         map_name=recording.map_name,
         ground_sample_distance_m=grid.gsd_m,
         focal_px=camera.fx,
         tilts_deg=tuple(tilt for _, tilt in calibration.stretches) if calibration else (camera.tilt_deg,),
         calibrated_on=calibration.frames if calibration else (),
-        searches=searched,
+        searches=searches,
         map_note=recording.world.note,
         map_share=float(grid.valid.mean()),
     )
-    learned = known
-    if calibration and conditions and not known:
-        learned = Learned(conditions, teachers, calibration, weightless, dict(searches), acceptances)
-    return FlightRun(result, grid, methods, learned)
 
 
 def _rows(

@@ -218,8 +218,8 @@ def _left_out(result: FlightResult) -> str:
     """What of the map is not searched, and what was assumed about it."""
     note = f"{result.map_note[:1].upper()}{result.map_note[1:]}." if result.map_note else ""
     share = (
-        f"{100 * (1 - result.map_share):.1f} % of its north-up grid shows no map (masked, without data, plain "
-        "black or white at its edge, or outside a turned picture) and is left out."
+        f"{100 * (1 - result.map_share):.1f} % of its north-up grid shows no map (masked, without data, "
+        "plain black or white at its edge, or outside a turned picture) and is left out."
         if result.map_share < 1
         else ""
     )

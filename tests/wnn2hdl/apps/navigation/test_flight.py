@@ -77,11 +77,6 @@ def test_what_was_learned_before_gives_the_same_fixes(run: FlightRun, flying: An
             assert replace(one, seconds=0) == replace(other, seconds=0)
 
 
-def test_a_calibration_of_another_window_is_refused(run: FlightRun, flying: Any) -> None:
-    with pytest.raises(InputError, match=r"--window was 40\.0, and now is 50\.0"):
-        flying({"window": 50.0}, known=run.learned)
-
-
 def test_progress_is_told(run: FlightRun, flying: Any) -> None:
     steps = ["map", "conventions", "calibration", "thresholds", "frames"]
     assert list(dict.fromkeys(step for step, _, _ in flying.steps)) == steps
