@@ -42,6 +42,7 @@ def test_columns_may_come_in_any_order_among_others(tmp_path: Path) -> None:
         ([HEAD, LINE.replace("119.7", "1e999")], "height_above_ground_m is not within"),
         ([HEAD, LINE.replace("a.jpg", "")], "without a name"),
         ([HEAD, LINE.replace("24.26,120.72", "120.72,24.26")], "latitude and longitude are probably swapped"),
+        ([HEAD, "a.jpg,24,2621,120,72,11,9"], "longitude_deg is not within -180 to 180: 2621"),
         ([HEAD, LINE.replace("120.72", "276.7")], "longitudes in the west are negative: -83.3"),
         ([HEAD, LINE.replace("119.7", "-3")], "above the ground, not above sea level"),
         ([HEAD, LINE.replace("24.26,120.72", "0,0.0")], "latitude and longitude are both 0"),
