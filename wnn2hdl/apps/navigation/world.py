@@ -1,8 +1,10 @@
 """The map: a georeferenced picture, laid out as the grid that matching happens on."""
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -19,7 +21,9 @@ from wnn2hdl.raster import Reading
 if TYPE_CHECKING:
     from affine import Affine
     from pyproj import Transformer
-    from rasterio.crs import CRS
+
+AS_STATED = Reading()
+"""Bands and values as the file states them."""
 
 _WARP_TOLERANCE_PX = 0.01
 """How far GDAL may miss by interpolating coordinates instead of computing each."""
@@ -39,30 +43,23 @@ class WorldMap:
         source: the picture, read when a grid is made of it.
         shape: rows and columns.
         transform: affine map from (column, row) of pixel corners to the coordinate system; it may be rotated.
-        crs: the coordinate system.
+        crs: the coordinate system, as anything PROJ takes: WKT, ``"EPSG:4326"``.
     """
 
     source: Source
     shape: tuple[int, int]
     transform: "Affine"
-    crs: "CRS"
+    crs: str
 
     @classmethod
-    def read(cls, path: Path, reading: Reading = Reading()) -> Self:  # noqa: B008  # frozen
-        """Open a georeferenced picture.
-
-        Args:
-            path: the file.
-            reading: how it is read.
+    def read(cls, path: Path, reading: Reading = AS_STATED) -> Self:
+        """Open a georeferenced picture, by the same rules as every other: `wnn2hdl.images.open_picture`.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
-            InputError: the file cannot be read, see `wnn2hdl.images.open_picture`, or has no georeference.
+            InputError: the file cannot be read, has no georeference, or does not say what its samples are.
         """
-        _rasterio()
-        from affine import Affine
-        from rasterio.crs import CRS
-
+        rasterio = _rasterio()
         source = open_picture(path, reading)
         place = source.georeference
         if place.crs is None or place.transform is None:
@@ -78,40 +75,36 @@ class WorldMap:
                 value=f"{path} ({shape[1]}x{shape[0]})",
                 hint="cut the country that was flown over out of it",
             )
-        return cls(source, shape, Affine(*place.transform), CRS.from_wkt(place.crs))
+        return cls(source, shape, rasterio.Affine(*place.transform), place.crs)
 
     @classmethod
-    def of_array(cls, image: NDArray[np.uint8], transform: "Affine", crs: Any) -> Self:
+    def of_array(cls, image: NDArray[np.uint8], transform: Iterable[float], crs: str) -> Self:
         """A map in memory.
 
         Args:
             image: uint8 ``[rows, columns, 3]``.
-            transform: affine map from (column, row) of pixel corners, as rasterio's.
-            crs: the coordinate system, as anything rasterio takes: ``"EPSG:4326"``.
+            transform: coefficients a … f of an affine map from (column, row) of pixel corners, as rasterio's.
+            crs: the coordinate system.
         """
-        _rasterio()
-        from rasterio.crs import CRS
+        rasterio = _rasterio()
+        image_shape = image.shape[0], image.shape[1]
+        return cls(PlainPicture(image), image_shape, rasterio.Affine(*islice(transform, 6)), crs)
 
-        return cls(PlainPicture(image), (image.shape[0], image.shape[1]), transform, CRS.from_user_input(crs))
-
-    @classmethod
-    def of_gdal(cls, image: NDArray[np.uint8], transform: Sequence[float], epsg: int) -> Self:
-        """As `of_array`, of plain numbers: the affine map's six coefficients a … f, and an EPSG code."""
-        _rasterio()
-        from affine import Affine
-
-        return cls.of_array(image, Affine(*transform), f"EPSG:{epsg}")
+    @property
+    def note(self) -> str:
+        """What had to be assumed about the file's bands and pages; empty if nothing."""
+        return self.source.note
 
     @cached_property
     def _geographic(self) -> "Transformer":
         from pyproj.exceptions import ProjError
 
         try:
-            return transformer(self.crs.to_wkt())
+            return transformer(self.crs)
         except ProjError as error:
             raise InputError(
                 "the map's coordinate system tells no latitudes and longitudes",
-                value=self.crs.to_string(),
+                value=self.crs,
                 hint="give a map in a geographic or projected coordinate system, as UTM",
             ) from error
 
@@ -152,6 +145,18 @@ class WorldMap:
                 hint="give it a transform that can be inverted",
             )
         return float(np.sqrt(area))
+
+    def digest(self) -> str:
+        """SHA-256 of the pixels, which of them are shown, and where they lie: 64 hexadecimal digits.
+
+        Raises:
+            InputError: the map cannot be read.
+        """
+        picture, shown = self._pixels()
+        found = hashlib.sha256(repr((self.shape, tuple(self.transform), self.crs)).encode())
+        found.update(np.ascontiguousarray(picture).data)
+        found.update(np.packbits(shown).data)
+        return found.hexdigest()
 
     def resampled(self, gsd_m: float | None = None) -> MapGrid:
         """Lay the map on a north-up metric grid.
@@ -236,13 +241,14 @@ class WorldMap:
         if not np.isfinite(positions).all():
             raise InputError(
                 "the map is not on the earth",
-                value=f"{self.crs.to_string()}, {tuple(self.transform)[:6]}",
+                value=f"{self.crs}, {tuple(self.transform)[:6]}",
                 hint="correct its coordinate system or its transform",
             )
 
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """The picture, uint8 ``[rows, columns, 3]``, and which of its pixels it shows."""
         picture, valid = self.source.read(0, 0, *self.shape)
+        picture = np.ascontiguousarray(picture)
         shown = np.ones(self.shape, dtype=np.bool_) if valid is None else valid
         for plain in (0, 255):
             shown = shown & ~_void(picture, plain)

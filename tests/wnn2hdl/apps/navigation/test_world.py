@@ -113,25 +113,43 @@ def test_bad_maps_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no georeference"):
         WorldMap.read(tmp_path / "plain.tif")
     deep = written(tmp_path / "deep.tif", dots().astype(np.uint16), crs="EPSG:32651", transform=METRES)
-    with pytest.raises(InputError, match="say --scale"):
+    with pytest.raises(InputError, match=r"samples are uint16.*--scale"):
         WorldMap.read(deep)
 
 
-def test_a_map_is_read_as_its_file_says(tmp_path: Path) -> None:
-    """In another order of bands, as indices of colours, or with white by 0 it is the same map."""
-    image = dots()
-    image[..., 1] = 255 - image[..., 1]
-    place = {"crs": "EPSG:32651", "transform": METRES}
-    expected = WorldMap.of_array(image, METRES, "EPSG:32651").resampled().image
-    path = written(tmp_path / "bgr.tif", image[..., ::-1], photometric="minisblack", **place)
+PLACE: dict[str, Any] = {"crs": "EPSG:32651", "transform": METRES}
+
+
+def coloured() -> NDArray[np.uint8]:
+    """Another picture in each channel."""
+    return np.stack([dots()[..., 0], dots()[::-1, :, 0], dots()[:, ::-1, 0]], axis=-1)
+
+
+def test_bands_are_taken_as_the_file_names_them(tmp_path: Path) -> None:
+    path = written(tmp_path / "bgr.tif", coloured()[..., ::-1], photometric="minisblack", **PLACE)
     with rasterio.open(path, "r+") as dataset:
-        dataset.descriptions = ("blue", "green", "red")
-    assert (WorldMap.read(path).resampled().image == expected).all()
-    deep = written(tmp_path / "deep.tif", image.astype(np.uint16) * 10, photometric="rgb", **place)
-    assert (WorldMap.read(deep, Reading(scale=(0, 2550))).resampled().image == expected).all()
-    inverted = written(tmp_path / "white.tif", 255 - dots()[..., :1], photometric="miniswhite", **place)
-    grey = WorldMap.of_array(dots(), METRES, "EPSG:32651").resampled().image
-    assert (WorldMap.read(inverted).resampled().image == grey).all()
+        dataset.colorinterp = [rasterio.enums.ColorInterp[name] for name in ("blue", "green", "red")]
+    straight = WorldMap.read(written(tmp_path / "rgb.tif", coloured(), photometric="rgb", **PLACE))
+    assert (WorldMap.read(path).resampled().image == straight.resampled().image).all()
+
+
+def test_bands_and_values_that_the_file_does_not_tell_are_named_by_the_user(tmp_path: Path) -> None:
+    four = np.concatenate([coloured()[..., ::-1], dots()[..., :1]], axis=-1)
+    path = written(tmp_path / "four.tif", four.astype(np.uint16) * 10, photometric="minisblack", **PLACE)
+    with pytest.raises(InputError, match="which of its 4 bands"):
+        WorldMap.read(path)
+    told = WorldMap.read(path, Reading(bands=(3, 2, 1), scale=(0, 2550)))
+    straight = WorldMap.read(written(tmp_path / "rgb.tif", coloured(), photometric="rgb", **PLACE))
+    assert (told.resampled().image == straight.resampled().image).all()
+
+
+def test_indices_of_a_colour_table_become_its_colours(tmp_path: Path) -> None:
+    path = written(tmp_path / "map.tif", dots()[..., :1], photometric="palette", **PLACE)
+    with rasterio.open(path, "r+") as dataset:
+        dataset.write_colormap(1, {level: (255 - level, level, 7, 255) for level in range(256)})
+    image = WorldMap.read(path).resampled().image
+    assert (image[20:-20, 20:-20, 2] == 7).all()
+    assert (image[20:-20, 20:-20, :2].sum(axis=-1) == 255).mean() > 0.9
 
 
 def test_a_damaged_map_is_refused(tmp_path: Path) -> None:
