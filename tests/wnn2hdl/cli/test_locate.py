@@ -175,7 +175,7 @@ def test_the_embedded_flight_needs_no_files(
         (["--window", "nan"], "no finite number"),
         (["--search", "around"], "--search"),
         (["--methods", "grey,canny"], "'canny' is none of perspective-canny, rotation-canny"),
-        (["--bands", "3,2,1"], "the embedded flight has its own camera and map: --bands"),
+        (["--bands", "3,2,1"], "--bands, --scale and --alpha are for a map from a file"),
         (["--calibration", "none.json"], "cannot read a calibration: none.json"),
         (["--calibration", "some.json", "--calibrate", "4"], "--calibration takes what --calibrate learned"),
     ],
