@@ -31,11 +31,11 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
 from wnn2hdl.apps.deforestation.classify import Method, classify_window
-from wnn2hdl.apps.deforestation.source import PlainPicture
 from wnn2hdl.apps.deforestation.windows import cut
 from wnn2hdl.dataset import from_samples
 from wnn2hdl.encode import high_bits
 from wnn2hdl.evaluation.classifiers import PixelTable, model_classifier
+from wnn2hdl.images import PlainPicture
 from wnn2hdl.samples import landscape
 from wnn2hdl.training.discriminators import train
 

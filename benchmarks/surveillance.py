@@ -22,7 +22,7 @@ from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
 from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, folds, from_masks
 from wnn2hdl.encode import high_bits
-from wnn2hdl.evaluation.accuracy import SquareVote, evaluate, majority_labels
+from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels
 from wnn2hdl.evaluation.classifiers import PictureClassifier, model_classifier
 from wnn2hdl.evaluation.measures import ious
 from wnn2hdl.training.bitselect import LUTS
@@ -124,11 +124,11 @@ def cross_validated(dataset: Dataset, trainer: Trainer, seed: int) -> list[float
     confusions = np.zeros((3, 2, 2), dtype=np.int64)
     for training, held_out in folds(dataset.names, FOLDS):
         classifier = trainer(dataset.subset(training))
-        voter = SquareVote(classifier, SIDE, SHARE, seed)
+        squares = Squares(SIDE, SHARE, seed)
         tests = dataset.subset(held_out)
-        pairs = (classifier, tests), (voter, majority_labels(tests, SIDE)), (voter, tests)
-        for row, (tested, labelled) in enumerate(pairs):
-            confusions[row] += evaluate(tested, labelled, silent).confusion.sum(axis=0)
+        pairs = (tests, None), (majority_labels(tests, SIDE), squares), (tests, squares)
+        for row, (labelled, voting) in enumerate(pairs):
+            confusions[row] += evaluate(classifier, labelled, silent, voting).confusion.sum(axis=0)
     right = np.trace(confusions, axis1=1, axis2=2) / confusions.sum(axis=(1, 2))
     return np.stack([right, ious(confusions)[:, 1]], axis=1).ravel().tolist()
 

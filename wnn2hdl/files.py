@@ -4,6 +4,7 @@ import json
 import math
 import os
 import secrets
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -85,6 +86,30 @@ def open_alone(path: Path, what: str, flags: int = 0) -> int:
             f"another {what} is writing to the same folder", value=path.parent, hint="choose another one"
         ) from error
     return file
+
+
+def require_file(path: Path, what: str) -> None:
+    """Refuse what is no regular file before it is opened: opening a pipe or a device may never return.
+
+    Args:
+        path: to be read.
+        what: what it should be, for the error: "the picture".
+
+    Raises:
+        InputError: there is no such file, its folder cannot be searched, or it is a folder, a pipe, a socket
+            or a device.
+    """
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError) as error:
+        reason = (error.strerror or "") if isinstance(error, OSError) else str(error)
+        raise InputError(f"cannot read {what}", value=f"{path} ({reason})") from error
+    if not stat.S_ISREG(mode):
+        kind = next((name for test, name in _KINDS if test(mode)), "a device")
+        raise InputError(f"cannot read {what}", value=f"{path} (it is {kind})", hint="give a regular file")
+
+
+_KINDS = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
 
 
 def make_folder(path: Path) -> None:

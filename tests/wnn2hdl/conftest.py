@@ -1,9 +1,14 @@
-"""A small model and builds of it, shared by tests of builds and of its commands."""
+"""A small model and builds of it, rasters to read: what tests of several packages share."""
 
+import warnings
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.planning import CompileOptions
@@ -69,3 +74,30 @@ def pixel_build(model: WisardModel, imagery: Path, tmp_path_factory: pytest.Temp
     options = CompileOptions(target="pixel", mode="domain", care=imagery)
     assert compile_model(model, folder, options, silent).failure is None
     return folder
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Callable[..., Path]:
+    """``save(bands, name, colours, **profile)`` writes bands ``[count, height, width]`` as a GeoTIFF."""
+    rasterio = pytest.importorskip("rasterio")
+
+    def write(bands: NDArray[Any], name: str = "scene.tif", colours: str = "", **profile: Any) -> Path:
+        path = tmp_path / name
+        count, height, width = bands.shape
+        options = {"driver": "GTiff", "count": count, "height": height, "width": width, "dtype": bands.dtype}
+        with (
+            warnings.catch_warnings(action="ignore"),
+            rasterio.open(path, "w", **options, **profile) as target,
+        ):
+            target.write(bands)
+            if colours:
+                target.colorinterp = [rasterio.enums.ColorInterp[x] for x in colours.split()]
+        return path
+
+    return write
+
+
+@pytest.fixture
+def scene() -> NDArray[np.uint8]:
+    """Three bands of 40 x 70."""
+    return np.random.default_rng(0).integers(0, 256, (3, 40, 70), dtype=np.uint8)

@@ -11,6 +11,7 @@ from wnn2hdl.apps.deforestation.options import ScanOptions
 from wnn2hdl.apps.deforestation.output import OVERLAY_FILE
 from wnn2hdl.apps.deforestation.scanning import Scanner
 from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
+from wnn2hdl.apps.navigation.methods import WEIGHTLESS
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.apps.navigation.summary import write_run
 from wnn2hdl.apps.sweep import Outcome, Recipe, discard_another, draw, grid, present, run_locally, run_sweep
@@ -183,12 +184,13 @@ def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRu
         )
         exhibits.append(Exhibit("Map", text, "scan/summary.md", f"scan/{OVERLAY_FILE}"))
     if flight:
-        row = flight.rows(flight.result.searches[-1])["perspective-weightless"]
+        search = flight.result.searches[-1]
+        row = flight.rows(search)[WEIGHTLESS]
         text = (
             f"{len(row.fixes)} frames of a generated flight, located on the whole map by weightless edges: "
-            f"{row.mean_m:.1f} m off on average."
+            f"{row.mean_m:.1f} m off on average. {search.beaten}"
         )
-        exhibits.append(Exhibit("Flight", text, "flight/flight.md", "flight/tracks_map.png"))
+        exhibits.append(Exhibit("Flight", text.strip(), "flight/flight.md", "flight/tracks_map.png"))
     text = f"{len(outcome.plan)} trained and costed circuits, and the statistics that choose among them."
     exhibits.append(Exhibit("Sweep", text, "sweep/index.html", "sweep/pareto.png"))
     return exhibits

@@ -20,7 +20,7 @@ from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.evaluation.accuracy import evaluate, require_same_classes
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.files import write_json, write_text
-from wnn2hdl.images import Palette, write_png
+from wnn2hdl.images import MaskFormat, Palette, write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.identifiers import name_from, require_name
 from wnn2hdl.progress import Progress
@@ -132,13 +132,12 @@ def _test_set(options: CompileOptions) -> Dataset | None:
             raise InputError(
                 "these options go together", value="--test-images and --test-masks", hint="give both"
             )
-        if options.palette:
-            raise InputError(
-                "a palette belongs to masks", value=options.palette, hint="give --test-masks too"
-            )
+        if options.palette or options.ignore:
+            raise InputError("--palette and --ignore are for masks", hint="give --test-masks too")
         return None
     palette = Palette.read(options.palette) if options.palette else None
-    return from_masks(options.test_images, options.test_masks, palette)
+    masks = MaskFormat(palette, frozenset(options.ignore or ()))
+    return from_masks(options.test_images, options.test_masks, masks, options.reading)
 
 
 @dataclass(frozen=True)
@@ -149,6 +148,7 @@ class _Measured:
     model_accuracy: float | None = None
     coverage: float | None = None
     confusion: tuple[tuple[int, ...], ...] | None = None
+    left_out: float | None = None
 
 
 def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _Measured:
@@ -161,6 +161,7 @@ def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _M
         model.accuracy,
         circuit.coverage,
         tuple(map(tuple, circuit.confusion.sum(axis=0).tolist())),
+        circuit.left_out_share,
     )
 
 
@@ -212,6 +213,7 @@ def _report(
             "mapping": dict(planned.methods),
             "simulated_vectors": dict(checked.vectors),
             "simulated_before": ", ".join(checked.remembered),
+            "left_out": {"care": planned.left_out, "test_images": measured.left_out},
         },
         hashes={"model": design.model.digest()},
         tools=generators(),

@@ -6,14 +6,37 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from wnn2hdl.edges import canny, filter_agreement, grey, learned, learned_under_budget
 from wnn2hdl.edges.compare import Agreement
-from wnn2hdl.images import list_images, read_rgb
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, PictureEncoder, WisardModel, pixel_encoder
-from wnn2hdl.lower.table import code_histogram, window_histogram
+from wnn2hdl.errors import InputError
+from wnn2hdl.images import Picture, list_images, read_picture, whole_windows
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, WisardModel, picture_encoder, window_codes
+from wnn2hdl.ir.window import SIDE
+from wnn2hdl.lower.table import code_histogram
 from wnn2hdl.progress import Progress, reported
+from wnn2hdl.raster import Reading
 from wnn2hdl.wisard import PixelClassifier
+
+
+@dataclass(frozen=True)
+class Imagery:
+    """A folder of pictures.
+
+    Attributes:
+        folder: where they lie.
+        reading: how they are read.
+    """
+
+    folder: Path
+    reading: Reading
+
+    def pictures(self, progress: Progress) -> Iterator[Picture]:
+        """Each picture, read when it is wanted; raises InputError if there is none or one is unreadable."""
+        paths = list_images(self.folder)
+        for path in reported(paths, f"reading {self.folder.name}", len(paths), progress):
+            yield read_picture(path, self.reading)
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,65 +44,83 @@ class Survey:
     """What occurs in imagery.
 
     Attributes:
-        codes: int64 ``[2**width]``, pixels of each code.
+        codes: int64 ``[2**width]``, pixels or neighbourhoods of each code.
         windows: int64 ``[512]``, 3x3 windows of the model's answers.
+        left_out: share of the pixels that are no data, or beside such where neighbours count, 0 to 1.
     """
 
     codes: NDArray[np.int64]
     windows: NDArray[np.int64]
+    left_out: float
 
 
-def survey(model: WisardModel, folder: Path, progress: Progress) -> Survey:
-    """Count the pixel codes in a folder of pictures, and the binary windows that the model makes of them.
+def survey(model: WisardModel, imagery: Imagery, progress: Progress) -> Survey:
+    """Count the codes of a model in imagery, and the binary windows that a model of pixels makes of it.
+
+    Pixels and windows that are not all data are left out.
 
     Raises:
-        InputError: the folder holds no pictures, or one cannot be read.
+        InputError: the folder holds no pictures, one cannot be read, none holds data, or the model is too
+            wide for a table.
     """
-    encoder, classifier = pixel_encoder(model), PixelClassifier(model)
-    codes = np.zeros(1 << encoder.width, dtype=np.int64)
+    encoder = picture_encoder(model)
+    classifier = None if isinstance(encoder, Neighbourhood) else PixelClassifier(model)
+    codes = code_histogram(encoder, ())
     windows = np.zeros(WINDOW_CODES, dtype=np.int64)
-    for picture in _pictures(folder, progress):
-        codes += code_histogram(encoder, [picture])
-        windows += window_histogram([classifier.classify(picture) != 0])
-    return Survey(codes, windows)
-
-
-def survey_codes(encoder: PictureEncoder, folder: Path, progress: Progress) -> NDArray[np.int64]:
-    """Count the codes in a folder of pictures, int64 ``[2**width]``; raises as `survey` does."""
-    return code_histogram(encoder, _pictures(folder, progress))
+    counted = pixels = 0
+    for picture in imagery.pictures(progress):
+        whole = _inside(picture, encoder.halo)
+        found = encoder.codes(picture.pixels)[whole]
+        codes += np.bincount(found, minlength=len(codes))
+        counted, pixels = counted + found.size, pixels + whole.size
+        if classifier is not None and min(picture.valid.shape) >= SIDE:
+            seen = window_codes(classifier.classify(picture.pixels) != 0)
+            windows += np.bincount(seen[_inside(picture, SIDE // 2)], minlength=WINDOW_CODES)
+    if not counted:
+        raise InputError("no pixel of the pictures is data", value=imagery.folder, hint="give others")
+    return Survey(codes, windows, 1 - counted / pixels)
 
 
 def learn_edges(
-    model: WisardModel, folder: Path, count: int, luts: int | None, progress: Progress
+    model: WisardModel, imagery: Imagery, count: int, luts: int | None, progress: Progress
 ) -> EdgeFilter:
-    """The patterns of the model's answers that best predict Canny's edges in a folder of pictures.
+    """The patterns of the model's answers that best predict Canny's edges in imagery.
 
     Args:
         model: binarises the pictures.
-        folder: the pictures.
+        imagery: the pictures.
         count: how many patterns.
         luts: only sets that fit so many LUTs are looked at, 1 to 3; None sets no limit.
         progress: told of each picture read.
     """
-    pairs = _edge_pairs(model, folder, progress)
+    pairs = _edge_pairs(model, imagery, progress)
     return learned(pairs, count) if luts is None else learned_under_budget(pairs, luts, count)
 
 
 def edge_agreement(
-    edge_filter: EdgeFilter, model: WisardModel, folder: Path, progress: Progress
+    edge_filter: EdgeFilter, model: WisardModel, imagery: Imagery, progress: Progress
 ) -> Agreement:
     """How far a filter's edges of the model's answers are Canny's, within one pixel."""
-    return filter_agreement(edge_filter, _edge_pairs(model, folder, progress))
+    return filter_agreement(edge_filter, _edge_pairs(model, imagery, progress))
 
 
 def _edge_pairs(
-    model: WisardModel, folder: Path, progress: Progress
+    model: WisardModel, imagery: Imagery, progress: Progress
 ) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+    """For each picture the model's answers and Canny's edges.
+
+    Where there is no data both see the nearest data, so that its rim is no edge.
+    """
     classifier = PixelClassifier(model)
-    for picture in _pictures(folder, progress):
-        yield classifier.classify(picture) != 0, canny(grey(picture))
+    for picture in imagery.pictures(progress):
+        pixels = picture.pixels
+        if picture.left_out:
+            nearest = distance_transform_edt(~picture.valid, return_distances=False, return_indices=True)
+            pixels = pixels[tuple(nearest)]
+        yield classifier.classify(pixels) != 0, canny(grey(pixels))
 
 
-def _pictures(folder: Path, progress: Progress) -> Iterator[NDArray[np.uint8]]:
-    paths = list_images(folder)
-    yield from map(read_rgb, reported(paths, f"reading {folder.name}", len(paths), progress))
+def _inside(picture: Picture, halo: int) -> NDArray[np.bool_]:
+    """Which windows that lie in a picture hold data alone, bool ``[height - 2 * halo, width - 2 * halo]``."""
+    height, width = picture.valid.shape
+    return whole_windows(picture.valid, halo)[halo : max(height - halo, 0), halo : max(width - halo, 0)]

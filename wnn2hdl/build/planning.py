@@ -7,7 +7,7 @@ import numpy as np
 
 from wnn2hdl.build.design import Design, Mode
 from wnn2hdl.build.emission import generators
-from wnn2hdl.build.imagery import edge_agreement, learn_edges, survey, survey_codes
+from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
 from wnn2hdl.edges import Agreement, boundary, from_file, half_plane
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, Style, WisardModel
@@ -17,6 +17,7 @@ from wnn2hdl.lower.targets import Ingredients, target_for
 from wnn2hdl.minimise import Minimised
 from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.progress import Progress
+from wnn2hdl.raster import AlphaMeaning, Reading
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,9 @@ class CompileOptions:
         effort: 0 to 3, how long to look for a smaller circuit.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
-        palette: file of the classes and their colours in the masks.
+        palette: file of the classes and what stands for them in the masks.
+        ignore: codes of the masks' pixels that nobody labelled.
+        bands: how all of these pictures are read, see `wnn2hdl.raster.Reading`; likewise `scale` and `alpha`.
         sobel_threshold: the baseline's, 1 to 2040.
     """
 
@@ -55,12 +58,21 @@ class CompileOptions:
     test_images: Path | None = None
     test_masks: Path | None = None
     palette: Path | None = None
+    ignore: tuple[int, ...] | None = None
+    bands: tuple[int, ...] | None = None
+    scale: tuple[float, float] | None = None
+    alpha: AlphaMeaning | None = None
     sobel_threshold: int = 128
 
     @property
     def imagery(self) -> Path | None:
         """The imagery in which edges are looked at."""
         return self.edge_images or self.care
+
+    @property
+    def reading(self) -> Reading:
+        """How pictures are read."""
+        return Reading(self.bands, self.scale, self.alpha)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,12 +84,14 @@ class Plan:
         covers: the two-level cover of each table, for the report, by the names of `Circuit.tables`.
         methods: how the LUT network of each table was found.
         agreement: how far the filter's edges are Canny's; None without imagery to measure it on.
+        left_out: share of the imagery's pixels that are no data, 0 to 1; None without a care set of imagery.
     """
 
     design: Design
     covers: dict[str, Minimised]
     methods: dict[str, str]
     agreement: Agreement | None
+    left_out: float | None
 
 
 def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progress) -> Plan:
@@ -95,7 +109,8 @@ def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progr
     """
     target = target_for(model, options.target)
     edges = _edge_filter(model, options, progress) if target.has_edges else None
-    care = _care_sets(model, options, progress) if options.mode == "domain" else None
+    seen = survey(model, _care_imagery(options), progress) if options.mode == "domain" else None
+    care = _care_sets(model, options, seen) if seen is not None else None
     minimised = minimise(target.lower(Ingredients(model, edges, care)), options.effort, progress)
     design = Design(
         model,
@@ -111,17 +126,15 @@ def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progr
     design.check()
     imagery, agreement = options.imagery, None
     if imagery and edges is not None:
-        agreement = edge_agreement(edges, model, imagery, progress)
-    return Plan(design, minimised.covers, minimised.methods, agreement)
+        agreement = edge_agreement(edges, model, Imagery(imagery, options.reading), progress)
+    left_out = None if seen is None else seen.left_out
+    return Plan(design, minimised.covers, minimised.methods, agreement, left_out)
 
 
-def _care_sets(model: WisardModel, options: CompileOptions, progress: Progress) -> dict[str, CareSet]:
+def _care_sets(model: WisardModel, options: CompileOptions, seen: Survey) -> dict[str, CareSet]:
     """The codes that occur in the care imagery, and the binary windows that the model makes of it."""
-    folder = _care_imagery(options)
     if isinstance(model.encoder, Neighbourhood):
-        codes = survey_codes(model.encoder, folder, progress)
-        return {"neighbourhood": Codes(care_set(codes, options.care_minimum))}
-    seen = survey(model, folder, progress)
+        return {"neighbourhood": Codes(care_set(seen.codes, options.care_minimum))}
     windows = seen.windows if seen.windows.any() else np.ones(WINDOW_CODES, dtype=np.int64)
     return {
         "pixel": Codes(care_set(seen.codes, options.care_minimum)),
@@ -147,12 +160,12 @@ def _header(design: Design, options: CompileOptions) -> tuple[str, ...]:
     return (*lines, made, versions)
 
 
-def _care_imagery(options: CompileOptions) -> Path:
+def _care_imagery(options: CompileOptions) -> Imagery:
     if options.care is None:
         raise InputError(
             "domain mode needs imagery that tells which codes occur", hint="give a folder with --care"
         )
-    return options.care
+    return Imagery(options.care, options.reading)
 
 
 def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress) -> EdgeFilter:
@@ -165,5 +178,6 @@ def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress
             raise InputError(
                 "learned edge patterns need imagery to learn from", hint="give a folder with --edge-images"
             )
-        return learn_edges(model, options.imagery, options.edge_patterns, options.edge_luts, progress)
+        imagery = Imagery(options.imagery, options.reading)
+        return learn_edges(model, imagery, options.edge_patterns, options.edge_luts, progress)
     return from_file(Path(options.edges))

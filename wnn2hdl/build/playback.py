@@ -19,6 +19,7 @@ from wnn2hdl.images import read_rgb
 from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS
 from wnn2hdl.ir.pixels import pixel_bits
 from wnn2hdl.progress import Progress
+from wnn2hdl.raster import Reading
 from wnn2hdl.verify.compiled import run_compiled
 from wnn2hdl.verify.simulation import simulate
 from wnn2hdl.verify.specification import Samples, word_values
@@ -49,7 +50,12 @@ class Playback:
 
 
 def play(
-    folder: Path, picture: Path, simulator: SimulatorName, progress: Progress, vcd: Path | None = None
+    folder: Path,
+    picture: Path,
+    simulator: SimulatorName,
+    progress: Progress,
+    vcd: Path | None = None,
+    reading: Reading = Reading(),  # noqa: B008  # frozen
 ) -> Playback:
     """Simulate a build's circuit on every window of a picture and compare every output bit.
 
@@ -58,10 +64,11 @@ def play(
 
     Args:
         folder: a build whose circuit reads a window.
-        picture: the picture, at least as large as a window.
+        picture: the picture, at least as large as a window, all of it data.
         simulator: Amaranth's, or a compiled simulation of the emitted Verilog.
         progress: told of the windows done; the compiled simulators tell nothing before the end.
         vcd: where Amaranth's simulator records the waves of the first windows.
+        reading: how the picture is read.
 
     Raises:
         InputError: another target, the picture cannot be used, or waves of another simulator are asked for.
@@ -80,7 +87,7 @@ def play(
         raise InputError(
             "waves are recorded by Amaranth's simulator only", value=simulator, hint="leave --vcd out"
         )
-    rgb = read_rgb(picture)
+    rgb = read_rgb(picture, reading)
     side = math.isqrt(window.width // PIXEL_BITS)
     if min(rgb.shape[:2]) < side:
         raise InputError("the picture is smaller than a window", value=f"{picture} {rgb.shape[:2]}")

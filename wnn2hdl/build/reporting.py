@@ -22,7 +22,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.files import read_json, write_text
-from wnn2hdl.images import Palette, png_bytes, read_rgb
+from wnn2hdl.images import Palette, png_bytes, read_rgb, spoken_codes
 from wnn2hdl.ir import Neighbourhood, WisardModel, window_codes
 from wnn2hdl.report import Entry, ModelFigures, Picture, build_page, check_report, percent
 from wnn2hdl.samples import landscape
@@ -168,6 +168,10 @@ def evaluation(name: str, options: CompileOptions) -> str:
     for flag, place in places.items():
         if place is not None:
             words += [flag, str(place.resolve())]
+    for option in ("ignore", "bands", "scale", "alpha"):
+        value = getattr(options, option)
+        if value is not None:
+            words += [f"--{option}", _word(option, value)]
     return shlex.join(words)
 
 
@@ -175,6 +179,10 @@ def _word(option: str, value: Any) -> str:
     # Paths are whole, since the command is run from another folder than the one they were given in.
     if isinstance(value, Path) or (option == "edges" and value not in _EDGE_SETS):
         return str(Path(value).resolve())
+    if option == "ignore":
+        return spoken_codes(value)
+    if isinstance(value, tuple):
+        return (":" if option == "scale" else ",").join(map(str, value))
     return str(value)
 
 

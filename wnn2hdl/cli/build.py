@@ -9,8 +9,9 @@ from wnn2hdl.build.compile import compile_model, require_luts
 from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder, palette_option
+from wnn2hdl.cli.options import file, folder
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
+from wnn2hdl.cli.pictures import alpha_option, bands_option, ignore_option, palette_option, scale_option
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style, WisardModel
 from wnn2hdl.lower.targets import TARGETS
@@ -78,6 +79,10 @@ from wnn2hdl.lower.targets import TARGETS
 @click.option("--test-images", type=folder, help="Pictures for the accuracies in the report.")
 @click.option("--test-masks", type=folder, help="Masks of --test-images.")
 @palette_option
+@ignore_option
+@bands_option
+@scale_option
+@alpha_option
 @click.option("--max-luts", type=click.IntRange(min=0), help="Fail if the target takes more LUTs.")
 @json_option
 def compile_command(
@@ -98,7 +103,12 @@ def compile_command(
     options = CompileOptions(care_minimum=choices.pop("care_min"), **choices)
     with progress() as report:
         build = compile_model(WisardModel.load(model), output, options, report)
-    emit(build.report, parts_table(build.report, build.folder), as_json=as_json)
+    lines = [parts_table(build.report, build.folder)]
+    for pictures, share in build.report["options"]["left_out"].items():
+        if share:
+            option = pictures.replace("_", "-")
+            lines.append(f"{share:.2%} of the pixels of --{option} left out: not labelled, or no data")
+    emit(build.report, "\n".join(lines), as_json=as_json)
     if build.failure is not None:
         raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
     if max_luts is not None:

@@ -13,9 +13,11 @@ from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.errors import CheckError
 from wnn2hdl.files import make_folder
 from wnn2hdl.images import write_png
+from wnn2hdl.raster import Reading
 
 build_argument = click.argument("build", type=folder)
 
@@ -51,6 +53,7 @@ def verify_command(build: Path, as_json: bool) -> None:
 @app.command("simulate")
 @build_argument
 @click.option("--image", type=file, required=True, help="The picture to run over.")
+@reading_options
 @click.option(
     "--simulator", type=click.Choice(get_args(SimulatorName)), default="amaranth", show_default=True
 )
@@ -58,7 +61,13 @@ def verify_command(build: Path, as_json: bool) -> None:
 @click.option("-o", "output", type=folder, help="Folder for the pictures.  [default: BUILD/simulation]")
 @json_option
 def simulate_command(
-    build: Path, image: Path, simulator: SimulatorName, vcd: Path | None, output: Path | None, as_json: bool
+    build: Path,
+    image: Path,
+    reading: Reading,
+    simulator: SimulatorName,
+    vcd: Path | None,
+    output: Path | None,
+    as_json: bool,
 ) -> None:
     """Run the circuit of BUILD over every window of a picture and compare each output bit.
 
@@ -69,7 +78,7 @@ def simulate_command(
       wnn2hdl simulate build/mine --image photo.png --vcd build/waves.vcd
     """
     with progress() as report:
-        result = play(build, image, simulator, report, vcd)
+        result = play(build, image, simulator, report, vcd, reading)
     output = output or build / "simulation"
     make_folder(output)
     pictures, places = {"class": result.foreground}, "windows"

@@ -23,15 +23,15 @@ from wnn2hdl.cli.options import (
     images_option,
     labelled,
     masks_option,
-    palette_option,
     seed_option,
     share_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import mask_options, reading_options
 from wnn2hdl.dataset import Dataset, from_samples
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
-from wnn2hdl.evaluation.accuracy import Evaluation, SquareVote, evaluate, majority_labels
+from wnn2hdl.evaluation.accuracy import Evaluation, Squares, evaluate, majority_labels
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.evaluation.measures import (
     CONFIDENCE,
@@ -47,8 +47,10 @@ from wnn2hdl.evaluation.measures import (
 from wnn2hdl.evaluation.rows import load_vector_classifier, row_confusion
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
+from wnn2hdl.images import MaskFormat
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.progress import Progress
+from wnn2hdl.raster import Reading
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
 
 MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
@@ -58,7 +60,8 @@ MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 @click.argument("model", type=click.Path(exists=True, path_type=Path))
 @images_option
 @masks_option
-@palette_option
+@mask_options
+@reading_options
 @click.option("--chips", type=folder, help="Folder of pictures tagged as a whole; needs --tags.")
 @click.option("--tags", type=file, help="CSV of the chips' tags: image_name,tags.")
 @click.option("--table", type=file, help="CSV of feature vectors; needs --label.")
@@ -80,7 +83,8 @@ def evaluate_command(
     model: Path,
     images: Path | None,
     masks: Path | None,
-    palette: Path | None,
+    mask_format: MaskFormat | None,
+    reading: Reading,
     chips: Path | None,
     tags: Path | None,
     table: Path | None,
@@ -110,7 +114,7 @@ def evaluate_command(
     if table is not None or label is not None:
         if table is None or label is None:
             raise InputError("these options go together", value="--table and --label", hint="give both")
-        if images or masks or palette or chips or tags or square:
+        if images or masks or mask_format or chips or tags or square or reading != Reading():
             raise InputError("a table has no pictures", hint="leave the options of pictures out")
         data, text = _with_table(model, table, label, raw)
         emit({"classifier": str(model), **data}, text, as_json=as_json)
@@ -120,18 +124,18 @@ def evaluate_command(
     with progress() as report:
         if chips is None and tags is None:
             first = next(iter(parts.values()))
-            dataset = _dataset(first, images, masks, palette, seed)
-            votes = None if square is None else (square, share)
-            data, text = _with_masks(parts, dataset, votes, seed, report)
+            dataset = _dataset(first, images, masks, mask_format, reading, seed)
+            squares = None if square is None else Squares(square, share, seed)
+            data, text = _with_masks(parts, dataset, squares, seed, report)
         else:
             if chips is None or tags is None:
                 raise InputError("these options go together", value="--chips and --tags", hint="give both")
-            if images or masks or palette or square:
+            if images or masks or mask_format or square:
                 raise InputError(
                     "chips with tags have no masks and no squares",
-                    hint="leave --images, --masks, --palette and --square out",
+                    hint="leave --images, --masks, --palette, --ignore and --square out",
                 )
-            data, text = _with_tags(parts, chips, tags, seed, report)
+            data, text = _with_tags(parts, chips, tags, reading, seed, report)
     bootstrap = {"method": METHOD, "confidence": CONFIDENCE, "seed": seed}
     emit({**head, **data, "bootstrap": bootstrap}, text, as_json=as_json)
 
@@ -153,17 +157,23 @@ def _parts(model: Path) -> tuple[dict[str, PictureClassifier], dict[str, str]]:
 
 
 def _dataset(
-    classifier: PictureClassifier, images: Path | None, masks: Path | None, palette: Path | None, seed: int
+    classifier: PictureClassifier,
+    images: Path | None,
+    masks: Path | None,
+    mask_format: MaskFormat | None,
+    reading: Reading,
+    seed: int,
 ) -> Dataset:
-    if not (images or masks or palette) and classifier.classes == SAMPLE_CLASSES:
+    told = images or masks or mask_format or reading != Reading()
+    if not told and classifier.classes == SAMPLE_CLASSES:
         return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed, every_kind=True)
-    return labelled(images, masks, palette=palette, seed=seed)
+    return labelled(images, masks, mask_format=mask_format, reading=reading, seed=seed)
 
 
 def _with_masks(
     parts: dict[str, PictureClassifier],
     dataset: Dataset,
-    votes: tuple[int, float] | None,
+    squares: Squares | None,
     seed: int,
     report: Progress,
 ) -> tuple[dict[str, Any], str]:
@@ -171,13 +181,13 @@ def _with_masks(
     for name, classifier in parts.items():
         result = evaluate(classifier, dataset, report)
         found[name] = _overall(result, seed)
-        if votes is not None:
-            voter, squares = SquareVote(classifier, *votes, seed), majority_labels(dataset, votes[0])
+        if squares is not None:
+            truth = majority_labels(dataset, squares.side)
             found[name]["squares"] = {
-                "side": votes[0],
-                "share": votes[1],
-                **_overall(evaluate(voter, squares, report), seed),
-                "pixels": _overall(evaluate(voter, dataset, report), seed),
+                "side": squares.side,
+                "share": squares.share,
+                **_overall(evaluate(classifier, truth, report, squares), seed),
+                "pixels": _overall(evaluate(classifier, dataset, report, squares), seed),
             }
         found[name]["per_image"] = {
             image: _figures(confusion, result.classes)
@@ -199,6 +209,7 @@ def _overall(result: Evaluation, seed: int) -> dict[str, Any]:
     return {
         **_figures(result.confusion.sum(axis=0), result.classes),
         "coverage": result.coverage,
+        "left_out": {"pixels": int(result.left_out.sum()), "share": result.left_out_share},
         "intervals": {name: interval(result.confusion, measure, seed) for name, measure in MEASURES.items()},
     }
 
@@ -230,12 +241,17 @@ def _with_table(model: Path, table: Path, label: str, raw: bool | None) -> tuple
 
 
 def _with_tags(
-    parts: dict[str, PictureClassifier], chips: Path, tags: Path, seed: int, report: Progress
+    parts: dict[str, PictureClassifier],
+    chips: Path,
+    tags: Path,
+    reading: Reading,
+    seed: int,
+    report: Progress,
 ) -> tuple[dict[str, Any], str]:
     found: dict[str, dict[str, Any]] = {}
     lines = []
     for name, classifier in parts.items():
-        result = evaluate_tagged(classifier, chips, tags, seed, report)
+        result = evaluate_tagged(classifier, chips, tags, seed, report, reading)
         cleared = sum(result.cleared.values())
         found[name] = {
             "auc": result.auc,
@@ -262,6 +278,9 @@ def _with_tags(
 
 def _lines(heading: str, figures: dict[str, Any]) -> str:
     lines = [f"{heading}: {_sentence(figures)}"]
+    left_out = figures.get("left_out", {"pixels": 0})
+    if left_out["pixels"]:
+        lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")
     table = Table("class", "precision", "recall", "F1", "IoU")
     for label, scores in figures["per_class"].items():
         table.add_row(label, *(_figure(score) for score in scores.values()))

@@ -16,21 +16,23 @@ from wnn2hdl.cli.options import (
     images_option,
     labelled,
     masks_option,
-    palette_option,
     seed_option,
     spoken_command,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import mask_options, reading_options
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import make_folder
+from wnn2hdl.images import MaskFormat
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.progress import Progress
+from wnn2hdl.raster import Reading
 from wnn2hdl.report.plots import plot_pareto
 from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
-from wnn2hdl.training.discriminators import train, with_colours
+from wnn2hdl.training.discriminators import LEFT_OUT, train, with_colours
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 
@@ -71,7 +73,8 @@ class Discriminators:
 @app.command("train")
 @images_option
 @masks_option
-@palette_option
+@mask_options
+@reading_options
 @click.option("--regions", type=file, help="CSV of labelled rectangles: chip,label,x,y,width,height.")
 @click.option("--chips", type=folder, help="Folder of the chips that --regions names.")
 @click.option(
@@ -114,7 +117,8 @@ class Discriminators:
 def train_command(
     images: Path | None,
     masks: Path | None,
-    palette: Path | None,
+    mask_format: MaskFormat | None,
+    reading: Reading,
     regions: Path | None,
     chips: Path | None,
     max_luts: int | None,
@@ -135,7 +139,9 @@ def train_command(
       wnn2hdl train --images IMAGES --masks MASKS --max-luts 2 -o model.json
       wnn2hdl train --images IMAGES --masks MASKS --neighbourhood 3 -o model.json
     """
-    dataset = labelled(images, masks, regions=regions, chips=chips, palette=palette, seed=seed)
+    dataset = labelled(
+        images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
+    )
     options = Discriminators(**discriminators)
     # Before the training, so that a place that cannot be written is told at once.
     make_folder(output.parent)
@@ -190,6 +196,9 @@ def _sentence(summary: dict[str, Any]) -> str:
         f"bleaching threshold {summary['bleaching']}, trained on {summary['images']} images; "
         f"RAMs {saturation['mean']:.0%} set, {saturation['highest']:.0%} at most",
     ]
+    left_out = summary["training"][LEFT_OUT]
+    if left_out["pixels"]:
+        lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")
     lines += [
         f"{point['luts']} LUTs a pixel: {point['accuracy']:.2%} in cross-validation by image, "
         f"{point['method']}, {point['model']}"

@@ -1,19 +1,24 @@
 """`locate`: where was the UAV, from each of its frames and a map."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.conventions import require_aircraft_angles
+from wnn2hdl.apps.navigation.methods import METHODS
 from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import made_folder
+from wnn2hdl.raster import Reading
 
 if TYPE_CHECKING:
     from wnn2hdl.apps.navigation.results import SearchKind
@@ -44,15 +49,34 @@ class CalibrationType(click.ParamType[int | Path]):
         return Path(text)
 
 
+class MethodsType(click.ParamType[tuple[str, ...]]):
+    """Keys of methods, by commas."""
+
+    name = "METHOD,…"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, ...]:
+        """The keys."""
+        if isinstance(value, tuple):
+            return value
+        keys = [key.strip() for key in str(value).split(",")]
+        unknown = [key for key in keys if key not in METHODS]
+        if unknown:
+            self.fail(f"{unknown[0]!r} is none of {', '.join(METHODS)}", param, ctx)
+        return tuple(keys)
+
+
 @app.command("locate")
 @click.option("--map", "map_file", type=file, help="GeoTIFF of the country flown over.")
+@reading_options
 @click.option("--frames", type=folder, help="Folder of the camera's frames.")
 @click.option("--poses", "poses_file", type=file, help="CSV of the frames' logged poses, the truth.")
 @click.option("--camera", "camera_file", type=file, help="TOML of the camera.")
 @click.option("--focal", type=FiniteRange(1, 1e6), metavar="PIXELS", help="Focal length in the frames.")
 @click.option(
     "--calibrate",
-    "calibration",
+    "calibrate",
     type=CalibrationType(),
     help="Fit camera, edges and confidence on so many frames, or on those of a CSV; they are not scored.",
 )
@@ -60,6 +84,18 @@ class CalibrationType(click.ParamType[int | Path]):
     "--calibrate-frames",
     type=folder,
     help="Folder of the frames of --calibrate's CSV.  [default: that of --frames]",
+)
+@click.option(
+    "--calibration",
+    "calibration_file",
+    type=file,
+    help="Take what an earlier run has learned: its calibration.json, of the same camera and map.",
+)
+@click.option(
+    "--methods",
+    type=MethodsType(),
+    default=METHODS,
+    help="Which to compare, as in grey,perspective-weightless.  [default: all five]",
 )
 @click.option(
     "--search",
@@ -99,12 +135,15 @@ class CalibrationType(click.ParamType[int | Path]):
 @json_option
 def locate_command(
     map_file: Path | None,
+    reading: Reading,
     frames: Path | None,
     poses_file: Path | None,
     camera_file: Path | None,
     focal: float | None,
-    calibration: int | Path | None,
+    calibrate: int | Path | None,
     calibrate_frames: Path | None,
+    calibration_file: Path | None,
+    methods: tuple[str, ...],
     search: str,
     window_m: float,
     heading_deg: float | None,
@@ -128,9 +167,12 @@ def locate_command(
       wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --focal 750 --calibrate 10
       wnn2hdl locate --map map.tif --frames NEW --poses new.csv --focal 750 --calibrate known.csv \\
         --calibrate-frames KNOWN --search map
+      wnn2hdl locate --map map.tif --frames NEW --poses new.csv --focal 750 --search map \\
+        --calibration build/flight/calibration.json --methods perspective-weightless
     """
     # Not at the top: they load what other commands need not wait for.
     from wnn2hdl.apps.navigation.flight import run_flight
+    from wnn2hdl.apps.navigation.learned import Learned
     from wnn2hdl.apps.navigation.output import flight_markdown
     from wnn2hdl.apps.navigation.summary import summary, write_run
 
@@ -140,33 +182,46 @@ def locate_command(
         searches["window"] = window_m
     if search in ("map", "both"):
         searches["map"] = None
-    if calibrate_frames and not isinstance(calibration, Path):
+    if calibration_file and calibrate:
+        raise InputError(
+            "--calibration takes what --calibrate learned before",
+            value=calibration_file,
+            hint="give one of them",
+        )
+    if calibrate_frames and not isinstance(calibrate, Path):
         raise InputError(
             "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, hint="give both"
         )
+    known = Learned.read(calibration_file) if calibration_file else None
     with made_folder(output), progress() as report:
         if map_file and frames and poses_file:
-            scored, calibrating = _divided(read_poses(poses_file), calibration, calibrate_frames)
+            scored, calibrating = _divided(_poses(poses_file), calibrate, calibrate_frames)
+            scored = _unseen(scored, known.poses) if known else scored
             files = frame_files(scored, frames) | frame_files(calibrating, calibrate_frames or frames)
-            recording = Recording.of_files(map_file, files, _camera(camera_file, focal)).scoring(scored)
+            recording = Recording.of_files(map_file, files, _camera(camera_file, focal), reading)
+            recording = recording.scoring(scored)
         else:
             _refuse_halves(given, {"--camera": camera_file, "--focal": focal})
-            if isinstance(calibration, Path):
+            if reading != Reading():
+                raise InputError("--bands, --scale and --alpha are for a map from a file", hint="give --map")
+            if isinstance(calibrate, Path):
                 raise InputError(
                     "the embedded flight has no file of poses",
-                    value=calibration,
+                    value=calibrate,
                     hint="give a count to --calibrate",
                 )
             report("flight", 0, 1)
             recording = Recording.embedded(seed)
             report("flight", 1, 1)
-            scored, calibrating = _divided(recording.poses, calibration, None)
+            scored, calibrating = _divided(recording.poses, calibrate, None)
+            scored = _unseen(scored, known.poses) if known else scored
             recording = recording.scoring(scored)
         run = run_flight(
             recording,
-            calibrating,
+            known or calibrating,
             searches,
             report,
+            keys=methods,
             heading_deg=heading_deg,
             scale=scale_percent / 100,
             jobs=jobs,
@@ -174,6 +229,23 @@ def locate_command(
         written = write_run(run, output)
     data = summary(run) | {"files": [str(path) for path in written]}
     emit(data, f"{flight_markdown(run.result)}\nwritten to {output}", as_json=as_json)
+
+
+def _poses(path: Path) -> tuple[Pose, ...]:
+    """The poses of a log, whose angles are an aircraft's."""
+    poses = read_poses(path)
+    require_aircraft_angles(poses)
+    return poses
+
+
+def _unseen(poses: tuple[Pose, ...], calibrating: tuple[Pose, ...]) -> tuple[Pose, ...]:
+    """Poses that have not calibrated."""
+    unseen = tuple(pose for pose in poses if pose not in calibrating)
+    if not unseen:
+        raise InputError(
+            "all frames of the poses have calibrated", value=poses[0].frame, hint="locate other frames"
+        )
+    return unseen
 
 
 def _divided(
@@ -185,7 +257,7 @@ def _divided(
     if isinstance(calibration, int):
         calibrating, scored = split(poses, calibration)
         return scored, calibrating
-    calibrating = read_poses(calibration)
+    calibrating = _poses(calibration)
     names = {pose.frame for pose in calibrating}
     # Cameras count anew for each flight: in another folder, a name may be another frame's.
     scored = tuple(
@@ -208,17 +280,17 @@ def _camera(path: Path | None, focal: float | None) -> Camera | float:
     raise InputError("nothing is known of the camera", hint="give --camera CAMERA.toml or --focal PIXELS")
 
 
-def _refuse_halves(given: dict[str, Path | None], camera: dict[str, object]) -> None:
+def _refuse_halves(given: Mapping[str, Path | None], own: Mapping[str, object]) -> None:
     """Refuse part of a flight's options; none at all is the embedded flight."""
     missing = [name for name, value in given.items() if value is None]
     if len(missing) < len(given):
         raise InputError(
             "these options go together", value=", ".join(given), hint=f"give {', '.join(missing)}"
         )
-    told = [name for name, value in camera.items() if value is not None]
+    told = [name for name, value in own.items() if value is not None]
     if told:
         raise InputError(
-            "the embedded flight has its own camera",
+            "the embedded flight has its own camera and map",
             value=" ".join(told),
             hint=f"drop it, or give {missing[0]}",
         )

@@ -11,7 +11,8 @@ from click.core import ParameterSource
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import Palette
+from wnn2hdl.images import MaskFormat
+from wnn2hdl.raster import Reading
 
 SAMPLE_IMAGES = 12
 SAMPLE_SIDE = 256
@@ -22,10 +23,7 @@ file = click.Path(dir_okay=False, path_type=Path)
 
 images_option = click.option("--images", type=folder, help="Folder of pictures; needs --masks.")
 masks_option = click.option(
-    "--masks", type=folder, help="Folder of masks of the same stems: 0 forest, else deforested."
-)
-palette_option = click.option(
-    "--palette", type=file, help="JSON of more classes and their colours in the masks, the background first."
+    "--masks", type=folder, help="Folder of masks of the same stems: 0 forest, another value deforested."
 )
 share_option = click.option(
     "--share",
@@ -67,7 +65,8 @@ def spoken_command(leave_out: Container[str]) -> str:
         value = context.params[name]
         words.append(parameter.opts[0])
         if value is not True:
-            words.append(str(value.resolve() if isinstance(value, Path) else value))
+            spoken = getattr(parameter.type, "spoken", str)
+            words.append(str(value.resolve()) if isinstance(value, Path) else spoken(value))
     return shlex.join(words)
 
 
@@ -77,13 +76,14 @@ def labelled(
     *,
     regions: Path | None = None,
     chips: Path | None = None,
-    palette: Path | None = None,
+    mask_format: MaskFormat | None = None,
+    reading: Reading = Reading(),  # noqa: B008  # frozen
     seed: int,
 ) -> Dataset:
     """The labelled images that the options name; the embedded landscapes if they name none.
 
     Raises:
-        InputError: half of a pair of options, or both pairs.
+        InputError: half of a pair of options, both pairs, or how to read what is not given.
     """
     pairs = {"--images and --masks": (images, masks), "--regions and --chips": (regions, chips)}
     given = [name for name, pair in pairs.items() if any(pair)]
@@ -93,9 +93,13 @@ def labelled(
     if len(given) == 2:
         raise InputError("two sources of labelled pixels", value=" / ".join(given), hint="give one of them")
     if images and masks:
-        return from_masks(images, masks, Palette.read(palette) if palette else None)
-    if palette:
-        raise InputError("a palette belongs to masks", value=palette, hint="give --images and --masks too")
+        return from_masks(images, masks, mask_format or MaskFormat(), reading)
+    if mask_format is not None:
+        raise InputError("--palette and --ignore are for masks", hint="give --images and --masks too")
     if regions and chips:
-        return from_regions(regions, chips, seed=seed)
+        return from_regions(regions, chips, seed=seed, reading=reading)
+    if reading != Reading():
+        raise InputError(
+            "--bands, --scale and --alpha are for pictures from files", hint="give --images and --masks too"
+        )
     return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed)

@@ -1,5 +1,6 @@
 """`scan`: maps of deforestation from imagery of any size."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, get_args
@@ -15,48 +16,12 @@ from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option, share_option
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.raster import Reading
 from wnn2hdl.tools import cores
-
-
-class BandsType(click.ParamType[tuple[int, ...]]):
-    """``3,2,1`` or ``1``: band numbers from 1."""
-
-    name = "R,G,B"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, ...]:
-        """The numbers."""
-        if isinstance(value, tuple):
-            return value
-        numbers = str(value).split(",")
-        if len(numbers) not in (1, 3) or not all(x.strip().isdecimal() and int(x) > 0 for x in numbers):
-            self.fail(f"{value!r} is neither three band numbers, as in 3,2,1, nor one", param, ctx)
-        return tuple(map(int, numbers))
-
-
-class ScaleType(click.ParamType[tuple[float, float]]):
-    """``0:3000``: the values that become 0 and 255."""
-
-    name = "LOW:HIGH"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
-        """The two numbers."""
-        if isinstance(value, tuple):
-            return value
-        try:
-            low, high = map(float, str(value).split(":"))
-        except ValueError:
-            self.fail(f"{value!r} is no pair of numbers, as in 0:3000", param, ctx)
-        if not -float("inf") < low < high < float("inf"):
-            self.fail(f"{value!r} does not rise from one number to another", param, ctx)
-        return low, high
 
 
 @app.command("scan")
@@ -81,8 +46,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
     "--minimum-area", type=FiniteRange(0, min_open=True), help="Dissolve smaller regions, in hectares."
 )
 @click.option("--minimum-pixels", type=click.IntRange(min=2), help="The same, in pixels.")
-@click.option("--bands", type=BandsType(), help="Bands of red, green, blue.  [default: what the file states]")
-@click.option("--scale", type=ScaleType(), help="Values that become 0 and 255; needed beyond 8 bits.")
+@reading_options
 @click.option(
     "--mask", type=file, help="A raster of INPUT's size; where it is not 0, INPUT is left out (clouds)."
 )
@@ -108,8 +72,7 @@ def scan_command(
     smooth: int,
     minimum_area: float | None,
     minimum_pixels: int | None,
-    bands: tuple[int, ...] | None,
-    scale: tuple[float, float] | None,
+    reading: Reading,
     mask: Path | None,
     before: Path | None,
     before_mask: Path | None,
@@ -136,7 +99,7 @@ def scan_command(
     if scheduler and jobs:
         raise InputError("--jobs is for this machine, --scheduler for others", hint="give one of them")
     options = ScanOptions(
-        Reading(bands, scale, mask),
+        replace(reading, mask=mask),
         Method(square, share, seed, smooth),
         minimum_pixels,
         minimum_area,
@@ -154,6 +117,9 @@ def _text(summary: dict[str, Any], output: Path) -> str:
     lines = [_line(summary["input"], summary["deforested"], "deforested")]
     if "change" in summary:
         lines.append(_line(f"since {summary['before']}", summary["change"]["newly_cleared"], "newly cleared"))
+    left_out = 1 - summary["classified_pixels"] / summary["pixels"]
+    if left_out:
+        lines.append(f"{left_out:.2%} of the pixels left out: no data, or masked")
     known = summary["coverage"]["share"]
     lines.append(
         f"{'none' if known is None else format(known, '.2%')} of the pixels have colours the model knows; "

@@ -35,8 +35,11 @@ from wnn2hdl.cli.options import (
     seed_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.pictures import mask_options, reading_options
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
+from wnn2hdl.images import MaskFormat
+from wnn2hdl.raster import Reading
 
 DEFAULT_FOLDER = Path("build/sweep")
 
@@ -62,6 +65,8 @@ class RangeType(click.ParamType[tuple[int, ...] | str]):
 @app.command("sweep")
 @images_option
 @masks_option
+@mask_options
+@reading_options
 @click.option(
     "--n", "address_bits", type=RangeType(), default="2..12", show_default=True, help="Address bits."
 )
@@ -118,6 +123,8 @@ class RangeType(click.ParamType[tuple[int, ...] | str]):
 def sweep_command(
     images: Path | None,
     masks: Path | None,
+    mask_format: MaskFormat | None,
+    reading: Reading,
     address_bits: tuple[int, ...],
     rams: tuple[int, ...],
     trials: int,
@@ -157,7 +164,8 @@ def sweep_command(
     plan = grid(recipe, address_bits, rams, trials)
     run = partial(run_distributed, scheduler) if scheduler else run_locally
     with progress() as report:
-        sets = draw(labelled(images, masks, seed=seed), pixels=pixels, seed=seed, progress=report)
+        dataset = labelled(images, masks, mask_format=mask_format, reading=reading, seed=seed)
+        sets = draw(dataset, pixels=pixels, seed=seed, progress=report)
         if name is not None:
             _write_model(sets, find_trial(plan, where, name), model_file, as_json=as_json)
             return

@@ -4,7 +4,7 @@ Neighbouring pixels are nearly equal, so a split by pixel would test on what was
 """
 
 from wnn2hdl.dataset.histogram import ColourHistogram, colour_histogram
-from wnn2hdl.dataset.labelled import CLASSES, Dataset, LabelledImage, cleared_classes, folds, split
+from wnn2hdl.dataset.labelled import CLASSES, Dataset, LabelledImage, Scene, cleared_classes, folds, split
 from wnn2hdl.dataset.regions import from_regions
 from wnn2hdl.dataset.sources import from_masks, from_samples
 
@@ -13,6 +13,7 @@ __all__ = [
     "ColourHistogram",
     "Dataset",
     "LabelledImage",
+    "Scene",
     "cleared_classes",
     "colour_histogram",
     "folds",

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
+from wnn2hdl.images import UNLABELLED, Picture, whole_windows
 
 CLASSES = ("forest", "deforested")
 """The two classes of the reference design; the first is the background."""
@@ -21,6 +23,21 @@ def cleared_classes(names: Sequence[str]) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True, eq=False)
+class Scene:
+    """A picture of which some pixels are not used.
+
+    Attributes:
+        picture: uint8 ``[height, width, 3]``: red, green, blue.
+        valid: bool ``[height, width]``: which pixels are data.
+        used: bool ``[height, width]``: which of these are labelled.
+    """
+
+    picture: NDArray[np.uint8]
+    valid: NDArray[np.bool_]
+    used: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
 class LabelledImage:
     """The labelled pixels of one image.
 
@@ -28,23 +45,60 @@ class LabelledImage:
         name: the image's file name, or the seed it was generated from.
         pixels: uint8 ``[n, 3]``: red, green, blue.
         labels: uint8 ``[n]``: class indices.
-        shape: height and width of the image if its pixels are all here, row by row; None if only some are.
+        shape: height and width of the image if its labelled pixels are all here, row by row; None if only
+            some are.
+        scene: the image, where some of it is not labelled or no data; None if all pixels are here.
     """
 
     name: str
     pixels: NDArray[np.uint8]
     labels: NDArray[np.uint8]
     shape: tuple[int, int] | None = None
+    scene: Scene | None = None
+
+    @classmethod
+    def of(cls, name: str, picture: Picture, classes: NDArray[np.uint8]) -> Self:
+        """Of a picture and its classes, uint8 ``[height, width]``, `UNLABELLED` where there is none."""
+        shape = classes.shape[0], classes.shape[1]
+        used = picture.valid & (classes != UNLABELLED)
+        if used.all():
+            return cls(name, picture.pixels.reshape(-1, 3), classes.ravel(), shape)
+        scene = Scene(picture.pixels, picture.valid, used)
+        return cls(name, picture.pixels[used], classes[used], shape, scene)
+
+    @property
+    def left_out(self) -> int:
+        """Pixels of the image that are no data or not labelled."""
+        return 0 if self.scene is None else int(self.scene.used.size - len(self.labels))
 
     @property
     def picture(self) -> NDArray[np.uint8]:
-        """The image, uint8 ``[height, width, 3]``; raises InputError if only some pixels are labelled."""
-        return self.pixels.reshape(*self._whole(), 3)
+        """The image, uint8 ``[height, width, 3]``; raises InputError if only some pixels are here."""
+        shape = self._whole()
+        return self.pixels.reshape(*shape, 3) if self.scene is None else self.scene.picture
 
     @property
     def label_picture(self) -> NDArray[np.uint8]:
-        """The labels in the place of their pixels, uint8 ``[height, width]``; raises as `picture` does."""
-        return self.labels.reshape(self._whole())
+        """The labels in the place of their pixels, uint8 ``[height, width]``; raises as `picture` does.
+
+        `UNLABELLED` where a pixel has none.
+        """
+        shape = self._whole()
+        if self.scene is None:
+            return self.labels.reshape(shape)
+        classes = np.full(shape, UNLABELLED, dtype=np.uint8)
+        classes[self.scene.used] = self.labels
+        return classes
+
+    def usable(self, halo: int) -> NDArray[np.bool_]:
+        """Which pixels are labelled and see data alone within ``halo``, bool ``[height, width]``.
+
+        Raises as `picture` does.
+        """
+        shape = self._whole()
+        if self.scene is None:
+            return np.ones(shape, dtype=np.bool_)
+        return self.scene.used & whole_windows(self.scene.valid, halo)
 
     def _whole(self) -> tuple[int, int]:
         if self.shape is None:

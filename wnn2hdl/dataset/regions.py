@@ -10,7 +10,8 @@ import numpy as np
 
 from wnn2hdl.dataset.labelled import CLASSES, Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import picture_size, read_rgb
+from wnn2hdl.images import picture_size, read_picture
+from wnn2hdl.raster import Reading
 
 REGION_COLUMNS = ("chip", "label", "x", "y", "width", "height")
 
@@ -46,37 +47,43 @@ class Region:
         )  # fmt: skip
 
 
-def from_regions(regions: Path, chips: Path, *, seed: int) -> Dataset:
+def from_regions(
+    regions: Path,
+    chips: Path,
+    *,
+    seed: int,
+    reading: Reading = Reading(),  # noqa: B008  # frozen
+) -> Dataset:
     """Squares drawn inside labelled rectangles, as the reference design chose its training pixels.
 
     For each class of a chip, `SQUARES` squares of `SQUARE_SIDE` are drawn, every place where one fits
     inside a rectangle being equally likely; squares may overlap, and each counts in full. A rectangle too
-    small for a square is used whole, once. The draw depends on the seed and on the chip's place among the
-    file's chips.
+    small for a square is used whole, once. Pixels of a square that are no data are left out. The draw
+    depends on the seed and on the chip's place among the file's chips.
 
     Args:
         regions: a CSV file with the columns `REGION_COLUMNS`; labels are those of `CLASSES`.
         chips: the folder of the pictures that the column ``chip`` names.
         seed: at least 0.
+        reading: how the chips are read.
 
     Raises:
         InputError: the file cannot be read, or a row is wrong: an unknown chip or label, a number that is
             none, a rectangle that reaches outside its picture or overlaps one of another label.
     """
-    by_chip = _read_regions(regions, chips)
+    by_chip = _read_regions(regions, chips, reading)
     names = tuple(sorted(by_chip))
 
     def load(name: str) -> LabelledImage:
         rng = np.random.default_rng([seed, names.index(name)])
-        rgb = read_rgb(chips / name)
-        parts = [
-            (rgb[square.y : square.y + square.height, square.x : square.x + square.width], square.label)
-            for square in _draw_squares(by_chip[name], rng)
-        ]
-        pixels = np.concatenate([part.reshape(-1, 3) for part, _ in parts])
+        picture = read_picture(chips / name, reading)
+        parts = []
+        for square in _draw_squares(by_chip[name], rng):
+            inside = np.s_[square.y : square.y + square.height, square.x : square.x + square.width]
+            parts.append((picture.pixels[inside][picture.valid[inside]], square.label))
+        pixels = np.concatenate([part for part, _ in parts])
         labels = np.repeat(
-            np.array([label for _, label in parts], dtype=np.uint8),
-            [part.shape[0] * part.shape[1] for part, _ in parts],
+            np.array([label for _, label in parts], dtype=np.uint8), [len(part) for part, _ in parts]
         )
         return LabelledImage(name, pixels, labels)
 
@@ -102,7 +109,7 @@ def _draw_squares(regions: list[Region], rng: np.random.Generator) -> Iterator[R
             )
 
 
-def _read_regions(path: Path, chips: Path) -> dict[str, list[Region]]:
+def _read_regions(path: Path, chips: Path, reading: Reading) -> dict[str, list[Region]]:
     by_chip: dict[str, list[Region]] = {}
     sizes: dict[str, tuple[int, int]] = {}
     for line, cells in _rows(path):
@@ -113,7 +120,7 @@ def _read_regions(path: Path, chips: Path) -> dict[str, list[Region]]:
                 raise InputError(
                     f"{where}: no such chip in {chips}", value=repr(chip), hint="correct its name"
                 )
-            sizes[chip] = picture_size(chips / chip)
+            sizes[chip] = picture_size(chips / chip, reading)
         if label not in CLASSES:
             raise InputError(f"{where}: unknown label", value=repr(label), hint=f"use {' or '.join(CLASSES)}")
         region = Region(

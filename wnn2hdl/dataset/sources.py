@@ -6,34 +6,54 @@ import numpy as np
 
 from wnn2hdl.dataset.labelled import CLASSES, Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import Palette, pair_masks, read_labels, read_mask, read_rgb
+from wnn2hdl.images import MaskFormat, pair_masks, read_labels, read_picture
+from wnn2hdl.raster import Reading
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
 from wnn2hdl.samples import landscape
 
 
-def from_masks(images: Path, masks: Path, palette: Palette | None = None) -> Dataset:
-    """Every pixel of each picture, labelled by the mask of the same stem.
+def from_masks(
+    images: Path,
+    masks: Path,
+    mask_format: MaskFormat = MaskFormat(),  # noqa: B008  # frozen
+    reading: Reading = Reading(),  # noqa: B008  # frozen
+) -> Dataset:
+    """The pixels of each picture that are data and that the mask of the same stem labels.
 
     Args:
         images: a folder of pictures.
-        masks: a folder of masks: 0 forest, anything else deforested; or, with ``palette``,
-            colours of classes.
-        palette: the classes and their colours, where there are more than forest and deforested.
+        masks: a folder of masks.
+        mask_format: how masks are read; by default 0 is forest, another value deforested.
+        reading: how pictures are read.
 
     Raises:
         InputError: at once if a folder cannot be used or a mask is missing; when an image is read, if it or
-            its mask cannot be used.
+            its mask cannot be used, or the masks of two images have different values for deforested.
     """
     pairs = {picture.name: (picture, mask) for picture, mask in pair_masks(images, masks)}
+    palette = mask_format.palette
+    foregrounds: dict[int, Path] = {}
 
     def load(name: str) -> LabelledImage:
-        picture, mask = pairs[name]
-        rgb = read_rgb(picture)
-        shape = (rgb.shape[0], rgb.shape[1])
-        labels = read_labels(mask, shape, palette) if palette else read_mask(mask, shape)
-        return LabelledImage(name, rgb.reshape(-1, 3), labels.ravel(), shape)
+        path, mask = pairs[name]
+        picture = read_picture(path, reading)
+        labels = read_labels(mask, path, picture.valid.shape, mask_format)
+        if labels.foreground is not None:
+            foregrounds.setdefault(labels.foreground, mask)
+            _require_one_foreground(foregrounds)
+        return LabelledImage.of(name, picture, labels.classes)
 
     return Dataset(palette.names if palette else CLASSES, tuple(sorted(pairs)), load)
+
+
+def _require_one_foreground(foregrounds: dict[int, Path]) -> None:
+    if len(foregrounds) > 1:
+        (one, first), (other, second) = list(foregrounds.items())[:2]
+        raise InputError(
+            f"masks of one folder hold {one} and {other}, and do not say which of them is deforested",
+            value=f"{first} and {second}",
+            hint="name what nobody labelled with --ignore VALUE, or give a palette file of the classes",
+        )
 
 
 def from_samples(count: int, side: int, *, seed: int, every_kind: bool = False) -> Dataset:

@@ -9,6 +9,7 @@ from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.evaluation.squares import vote
+from wnn2hdl.images import whole_windows
 from wnn2hdl.progress import Progress, reported
 
 
@@ -21,23 +22,46 @@ class Evaluation:
         classes: class names, the background first.
         confusion: int64 ``[images, classes, classes]``, pixels by true class (rows) and answer (columns).
         covered: int64 ``[images]``, pixels whose colours the classifier knows.
+        left_out: int64 ``[images]``, pixels that are not labelled, no data, or beside such.
     """
 
     names: tuple[str, ...]
     classes: tuple[str, ...]
     confusion: NDArray[np.int64]
     covered: NDArray[np.int64]
+    left_out: NDArray[np.int64]
 
     @property
     def accuracy(self) -> float:
-        """Share of all pixels that are right, 0 to 1."""
+        """Share of all measured pixels that are right, 0 to 1."""
         total = self.confusion.sum(axis=0)
         return float(np.trace(total) / total.sum())
 
     @property
     def coverage(self) -> float:
-        """Share of all pixels whose colours the classifier knows, 0 to 1."""
+        """Share of all measured pixels whose colours the classifier knows, 0 to 1."""
         return float(self.covered.sum() / self.confusion.sum())
+
+    @property
+    def left_out_share(self) -> float:
+        """Share of all pixels that are left out, 0 to 1."""
+        left_out = self.left_out.sum()
+        return float(left_out / (left_out + self.confusion.sum()))
+
+
+@dataclass(frozen=True)
+class Squares:
+    """Squares whose pixels all get the class of most of a random share of them.
+
+    Attributes:
+        side: pixels of a square's side; squares start at a picture's top left corner.
+        share: of a square's pixels that vote, above 0, at most 1.
+        seed: of the draw.
+    """
+
+    side: int
+    share: float
+    seed: int
 
 
 def require_same_classes(classes: tuple[str, ...], dataset: Dataset) -> None:
@@ -50,38 +74,66 @@ def require_same_classes(classes: tuple[str, ...], dataset: Dataset) -> None:
         )
 
 
-def evaluate(classifier: PictureClassifier, dataset: Dataset, progress: Progress) -> Evaluation:
+def evaluate(
+    classifier: PictureClassifier, dataset: Dataset, progress: Progress, squares: Squares | None = None
+) -> Evaluation:
     """Compare a classifier's answers with the labels of images.
 
-    A classifier that looks at neighbours sees a picture's borders repeated outwards.
+    A classifier that looks at neighbours sees a picture's borders repeated outwards, and is not asked about
+    pixels beside some that are no data.
 
     Args:
         classifier: what answers.
         dataset: the images; one is in memory at a time.
         progress: told of each image read.
+        squares: let the pixels of squares vote, those that are data; None for each pixel by itself.
 
     Raises:
-        InputError: an image cannot be read, the classes are not those of the labels, or the classifier looks
-            at neighbours and an image has only some of its pixels labelled.
+        InputError: an image cannot be read, the classes are not those of the labels, no pixel can be
+            measured, or neighbours or squares are needed and an image has only some of its pixels here.
     """
     require_same_classes(classifier.classes, dataset)
     classes = len(dataset.classes)
     confusion = np.zeros((len(dataset), classes, classes), dtype=np.int64)
-    covered = np.zeros(len(dataset), dtype=np.int64)
+    covered, left_out = np.zeros((2, len(dataset)), dtype=np.int64)
     for position, image in enumerate(reported(dataset, "evaluating images", len(dataset), progress)):
-        picture, labels = _pictures(image, classifier.halo)
-        answers, known = classifier.answer(picture)
+        if image.shape is None and not classifier.halo and squares is None:
+            answers, known = (x[0] for x in classifier.answer(image.pixels[np.newaxis]))
+            labels = image.labels
+        else:
+            answers, known = _answers(classifier, image, squares)
+            used = image.usable(classifier.halo)
+            answers, known, labels = answers[used], known[used], image.label_picture[used]
+            left_out[position] = used.size - len(labels)
         cells = labels.astype(np.int64) * classes + answers
-        confusion[position] = np.bincount(cells.ravel(), minlength=classes**2).reshape(classes, classes)
+        confusion[position] = np.bincount(cells, minlength=classes**2).reshape(classes, classes)
         covered[position] = np.count_nonzero(known)
-    return Evaluation(dataset.names, dataset.classes, confusion, covered)
+    if not confusion.any():
+        raise InputError(
+            "no pixel can be measured",
+            value=f"{len(dataset)} images",
+            hint="give images with labelled pixels",
+        )
+    return Evaluation(dataset.names, dataset.classes, confusion, covered, left_out)
 
 
-def _pictures(image: LabelledImage, halo: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """The picture with its halo, and its labels; pixels that make no picture as one row."""
-    if image.shape is None and not halo:
-        return image.pixels[np.newaxis], image.labels[np.newaxis]
-    return with_halo(image.picture, halo), image.label_picture
+def _answers(
+    classifier: PictureClassifier, image: LabelledImage, squares: Squares | None
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """Class of each pixel of an image, and whether the classifier knows its colours: ``[height, width]``."""
+    answers, known = classifier.answer(with_halo(image.picture, classifier.halo))
+    if squares is None:
+        return answers, known
+    valid = None if image.scene is None else whole_windows(image.scene.valid, classifier.halo)
+    voted = vote(
+        answers,
+        valid,
+        side=squares.side,
+        share=squares.share,
+        seed=squares.seed,
+        count=len(classifier.classes),
+    )
+    return voted, known
 
 
 def with_halo(picture: NDArray[np.uint8], halo: int) -> NDArray[np.uint8]:
@@ -89,49 +141,8 @@ def with_halo(picture: NDArray[np.uint8], halo: int) -> NDArray[np.uint8]:
     return np.pad(picture, ((halo, halo), (halo, halo), (0, 0)), mode="edge")
 
 
-@dataclass(frozen=True, eq=False)
-class SquareVote:
-    """A classifier that gives all pixels of a square the class of most of a random share of them.
-
-    It is for whole pictures: squares start at the top left corner of what it is given.
-
-    Attributes:
-        each: what classifies the single pixels.
-        side: pixels of a square's side.
-        share: of a square's pixels that vote, above 0, at most 1.
-        seed: of the draw.
-    """
-
-    each: PictureClassifier
-    side: int
-    share: float
-    seed: int
-
-    @property
-    def classes(self) -> tuple[str, ...]:
-        """See `PictureClassifier.classes`."""
-        return self.each.classes
-
-    @property
-    def halo(self) -> int:
-        """See `PictureClassifier.halo`."""
-        return self.each.halo
-
-    def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """See `PictureClassifier.classify`."""
-        return self._vote(self.each.classify(picture))
-
-    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-        """See `PictureClassifier.answer`; the known pixels are the single ones."""
-        single, known = self.each.answer(picture)
-        return self._vote(single), known
-
-    def _vote(self, single: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        return vote(single, None, side=self.side, share=self.share, seed=self.seed, count=len(self.classes))
-
-
 def majority_labels(dataset: Dataset, side: int) -> Dataset:
-    """The same images, every pixel labelled by the majority of its square: the truth about whole squares.
+    """The same images, every labelled pixel of the class of most of its square: the truth about squares.
 
     Raises:
         InputError: when an image is read that has only some of its pixels labelled.
@@ -139,7 +150,9 @@ def majority_labels(dataset: Dataset, side: int) -> Dataset:
 
     def load(name: str) -> LabelledImage:
         image = dataset.load(name)
-        labels = vote(image.label_picture, None, side=side, share=1.0, seed=0, count=len(dataset.classes))
-        return replace(image, labels=labels.ravel())
+        used = image.usable(0)
+        classes = np.where(used, image.label_picture, 0)
+        majority = vote(classes, used, side=side, share=1.0, seed=0, count=len(dataset.classes))
+        return replace(image, labels=majority[used])
 
     return replace(dataset, load=load)

@@ -13,8 +13,9 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.evaluation.measures import CONFIDENCE, RESAMPLES
-from wnn2hdl.images import by_stem, read_rgb
+from wnn2hdl.images import by_stem, read_picture, whole_windows
 from wnn2hdl.progress import Progress, reported
+from wnn2hdl.raster import Reading
 
 COLUMNS = ("image_name", "tags")
 
@@ -52,7 +53,7 @@ class TaggedEvaluation:
     """The outcome over tagged pictures.
 
     Attributes:
-        shares: of each picture used, the share of pixels of classes that count as deforested.
+        shares: of each picture used, the share of its valid pixels of classes that count as deforested.
         cleared: of the same pictures, whether the tags say so.
         left_out: pictures left out, by reason.
         auc: area under the ROC curve of the share as a score; None if one side has no picture.
@@ -67,7 +68,12 @@ class TaggedEvaluation:
 
 
 def evaluate_tagged(
-    classifier: PictureClassifier, chips: Path, tags: Path, seed: int, progress: Progress
+    classifier: PictureClassifier,
+    chips: Path,
+    tags: Path,
+    seed: int,
+    progress: Progress,
+    reading: Reading = Reading(),  # noqa: B008  # frozen
 ) -> TaggedEvaluation:
     """Rank tagged pictures by the share of pixels that a classifier calls deforested; see `RULE`.
 
@@ -79,10 +85,11 @@ def evaluate_tagged(
         tags: a CSV file with the columns `COLUMNS`: the picture's stem, and its tags with blanks between.
         seed: of the bootstrap.
         progress: told of each picture read.
+        reading: how pictures are read.
 
     Raises:
-        InputError: the tags or a picture cannot be read, or a tagged picture is not in the folder, or there
-            twice.
+        InputError: the tags or a picture cannot be read, a picture holds no data, or a tagged picture is not
+            in the folder, or there twice.
     """
     kinds = {name: kind(words) for name, words in read_tags(tags).items()}
     cleared = {name: found for name, found in kinds.items() if isinstance(found, bool)}
@@ -95,8 +102,12 @@ def evaluate_tagged(
             raise InputError(
                 f"no picture of this name in {chips}", value=name, hint="correct the file of tags"
             )
-        answers = classifier.classify(with_halo(read_rgb(files[name]), classifier.halo))
-        shares[name] = float(np.isin(answers, counted).mean())
+        picture = read_picture(files[name], reading)
+        answers = classifier.classify(with_halo(picture.pixels, classifier.halo))
+        used = whole_windows(picture.valid, classifier.halo)
+        if not used.any():
+            raise InputError("no pixel of the picture is data", value=files[name], hint="take it out")
+        shares[name] = float(np.isin(answers[used], counted).mean())
     positive = np.array([share for name, share in shares.items() if cleared[name]])
     negative = np.array([share for name, share in shares.items() if not cleared[name]])
     auc = float(_auc(positive, negative)) if len(positive) and len(negative) else None

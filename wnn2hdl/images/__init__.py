@@ -1,20 +1,33 @@
 """Pictures and masks to arrays and back; nothing about a file's meaning is guessed in silence."""
 
+from wnn2hdl.images.codes import parse_code, spoken_codes
 from wnn2hdl.images.folders import by_stem, list_images, pair_masks
+from wnn2hdl.images.labels import UNLABELLED, Labels, MaskFormat, read_labels
 from wnn2hdl.images.palette import CLASS_COLOURS, Palette
-from wnn2hdl.images.reading import picture_size, read_labels, read_mask, read_rgb
+from wnn2hdl.images.reading import Picture, picture_size, read_picture, read_rgb, whole_windows
+from wnn2hdl.images.sources import PlainPicture, Source, open_picture
 from wnn2hdl.images.writing import png_bytes, write_png
 
 __all__ = [
     "CLASS_COLOURS",
+    "UNLABELLED",
+    "Labels",
+    "MaskFormat",
     "Palette",
+    "Picture",
+    "PlainPicture",
+    "Source",
     "by_stem",
     "list_images",
+    "open_picture",
     "pair_masks",
+    "parse_code",
     "picture_size",
     "png_bytes",
     "read_labels",
-    "read_mask",
+    "read_picture",
     "read_rgb",
+    "spoken_codes",
+    "whole_windows",
     "write_png",
 ]

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from wnn2hdl.errors import InputError
 
-SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
+SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".jp2")
 """What `list_images` takes for a picture, in lower or upper case."""
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,10 @@ from PIL import ImageColor
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import read_json
+from wnn2hdl.images.codes import code_of, colour_of, parse_code
+
+MOST_CLASSES = 255
+"""Of a palette: one value of a byte is left for pixels without a class."""
 
 CLASS_COLOURS = {
     "forest": (22, 92, 44),
@@ -23,17 +27,26 @@ CLASS_COLOURS = {
 """Colours of the classes this project names itself."""
 
 
+IGNORED = "ignore"
+"""The entry of a palette file whose codes are of no class: nobody labelled these pixels."""
+
+
 @dataclass(frozen=True)
 class Palette:
-    """The colour of each class, for masks of more than two classes and for pictures of results.
+    """The colour of each class in pictures of results, and what stands for it in masks.
 
     Attributes:
         names: class names; the index of a name is the class index.
         colours: red, green and blue of each class, 0 to 255, all different.
+        codes: what stands for each class in masks, as `wnn2hdl.images.codes` makes them; the colours' own if
+            left out.
+        ignored: codes of pixels that nobody labelled.
     """
 
     names: tuple[str, ...]
     colours: tuple[tuple[int, int, int], ...]
+    codes: tuple[tuple[int, ...], ...] = ()
+    ignored: frozenset[int] = frozenset()
 
     @classmethod
     def of(cls, names: tuple[str, ...]) -> Self:
@@ -43,35 +56,44 @@ class Palette:
 
     @classmethod
     def read(cls, path: Path) -> Self:
-        """Read a palette file: a JSON object of class names and colours, ``{"forest": "#165c2c", …}``.
+        """Read a palette file: a JSON object of class names and what stands for them in masks.
 
-        The first class is the background.
+        That is a colour, a number, or a list of these: ``{"forest": "#165c2c", "river": [26, 33], …}``. The
+        first class is the background. Pixels of the entry `IGNORED` are left out.
 
         Raises:
-            InputError: no such file, no JSON object, fewer than two or more than 256 classes, a colour that
-                is none, or one colour for two classes.
+            InputError: no such file, no JSON object, fewer than two or more than 255 classes, an entry that
+                is neither a colour nor a number, or one for two classes.
         """
         entries = read_json(path, "a palette")
-        if not 2 <= len(entries) <= 256:
-            raise InputError("a palette has 2 to 256 classes", value=f"{path} ({len(entries)})")
-        colours = []
-        for name, text in entries.items():
-            try:
-                colours.append(ImageColor.getrgb(text)[:3])
-            except (ValueError, AttributeError, TypeError) as error:
-                raise InputError(
-                    f"the palette {path} gives {name!r} no colour",
-                    value=repr(text),
-                    hint="write it as #rrggbb",
-                ) from error
+        codes = {name: _codes(path, name, entry) for name, entry in entries.items()}
+        ignored = frozenset(codes.pop(IGNORED, ()))
+        if not 2 <= len(codes) <= MOST_CLASSES:
+            raise InputError(f"a palette has 2 to {MOST_CLASSES} classes", value=f"{path} ({len(codes)})")
+        known = [*ignored, *(code for some in codes.values() for code in some)]
+        if len(set(known)) != len(known):
+            raise InputError(
+                "two classes of the palette share a colour or a number", value=path, hint="change one of them"
+            )
+        names = tuple(codes)
+        first = [
+            colour_of(some[0]) if isinstance(_first(entries[name]), str) else None
+            for name, some in codes.items()
+        ]
+        colours = tuple(own or other for own, other in zip(first, cls.of(names).colours, strict=True))
         if len(set(colours)) != len(colours):
             raise InputError(
-                "two classes of the palette share a colour", value=path, hint="change one of them"
+                "two classes of the palette share a colour", value=path, hint="give both of them a colour"
             )
-        return cls(tuple(entries), tuple(colours))
+        return cls(names, colours, tuple(codes.values()), ignored)
+
+    @property
+    def mask_codes(self) -> tuple[tuple[int, ...], ...]:
+        """What stands for each class in masks."""
+        return self.codes or tuple((code_of(colour),) for colour in self.colours)
 
     def to_json(self) -> dict[str, str]:
-        """The object of a palette file, read back by `read`."""
+        """The object of a palette file of these colours, read back by `read`."""
         return {
             name: "#{:02x}{:02x}{:02x}".format(*colour)
             for name, colour in zip(self.names, self.colours, strict=True)
@@ -80,3 +102,21 @@ class Palette:
     def paint(self, labels: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """A picture of class indices: uint8 ``S`` to uint8 ``S + (3,)``."""
         return np.take(np.array(self.colours, dtype=np.uint8), labels, axis=0)
+
+
+def _codes(path: Path, name: str, entry: Any) -> tuple[int, ...]:
+    parts = entry if isinstance(entry, list) else [entry]
+    try:
+        if not parts:
+            raise ValueError("nothing")
+        return tuple(parse_code(part) for part in parts)
+    except ValueError as error:
+        raise InputError(
+            f"the palette {path} gives {name!r} no colour",
+            value=repr(entry),
+            hint="write it as #rrggbb, or as the whole number that stands for it in the masks",
+        ) from error
+
+
+def _first(entry: Any) -> Any:
+    return entry[0] if isinstance(entry, list) else entry

@@ -24,24 +24,37 @@ class Channels:
 
 
 def choose_channels(
-    path: Path, interpretations: tuple[str, ...], bands: tuple[int, ...] | None = None
+    path: Path,
+    interpretations: tuple[str, ...],
+    descriptions: tuple[str | None, ...] = (),
+    bands: tuple[int, ...] | None = None,
 ) -> Channels:
     """Choose the bands.
 
     Args:
         path: the file, for errors.
         interpretations: GDAL's colour interpretation of each band: ``red``, ``gray``, ``undefined`` …
+        descriptions: the name that each band is given, such as ``Red``; None for a band without one.
         bands: the user's choice: three bands, or one.
 
     Raises:
-        InputError: the user names bands that do not exist, or the file does not say which bands to take.
+        InputError: the user names bands that do not exist, or the file does not say which bands to take, or
+            says it in two ways that differ.
     """
     count = len(interpretations)
     if bands is not None:
         _check_choice(path, bands, count)
         return Channels(bands, palette=len(bands) == 1 and interpretations[bands[0] - 1] == "palette")
-    if all(interpretations.count(colour) == 1 for colour in _COLOURS):
-        return Channels(tuple(interpretations.index(colour) + 1 for colour in _COLOURS))
+    stated = [_of_colours(interpretations), _of_colours([(x or "").strip().lower() for x in descriptions])]
+    found = {indexes for indexes in stated if indexes}
+    if len(found) > 1:
+        raise InputError(
+            "the colours and the names of the file's bands differ",
+            value=f"{path} ({', '.join(interpretations)} / {', '.join(str(x) for x in descriptions)})",
+            hint="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
+        )
+    if found:
+        return Channels(found.pop())
     opaque = tuple(name for name in interpretations if name != "alpha")
     if len(opaque) == 1 and interpretations[0] != "alpha":
         return Channels((1,), palette=opaque[0] == "palette")
@@ -52,6 +65,13 @@ def choose_channels(
         value=f"{path} ({', '.join(interpretations)})",
         hint="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
     )
+
+
+def _of_colours(names: list[str] | tuple[str, ...]) -> tuple[int, ...]:
+    """The bands whose names are those of the three colours, if each colour has just one."""
+    if any(names.count(colour) != 1 for colour in _COLOURS):
+        return ()
+    return tuple(names.index(colour) + 1 for colour in _COLOURS)
 
 
 def _check_choice(path: Path, bands: tuple[int, ...], count: int) -> None:

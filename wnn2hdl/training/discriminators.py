@@ -11,6 +11,9 @@ from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect, WisardModel
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
+LEFT_OUT = "left_out"
+"""Of a model's training: pixels of the images that were not labelled or no data, and their share of all."""
+
 
 def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
     """How often each code occurs, by image and class: int64 ``[images, classes, 2**width]``.
@@ -93,13 +96,18 @@ def _balanced(histograms: NDArray[np.int64]) -> NDArray[np.int64]:
 def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> WisardModel:
     """The model with a memory of the colours of its training images; these are read once more.
 
+    Its training notes how many pixels of the images were left out: not labelled, or no data.
+
     Raises:
         InputError: an image cannot be read.
     """
     seen = np.zeros(1 << COLOURS.width, dtype=np.bool_)
+    used = left_out = 0
     for image in reported(dataset, "noting colours", len(dataset), progress):
         seen[COLOURS.codes(image.pixels)] = True
-    return replace(model, colours=np.flatnonzero(seen))
+        used, left_out = used + len(image.labels), left_out + image.left_out
+    figures = {LEFT_OUT: {"pixels": left_out, "share": left_out / (used + left_out)}}
+    return replace(model, colours=np.flatnonzero(seen), training=dict(model.training) | figures)
 
 
 def _histogram(image: LabelledImage, encoder: BitSelect, shape: tuple[int, int]) -> NDArray[np.int64]:

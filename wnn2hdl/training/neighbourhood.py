@@ -12,7 +12,7 @@ from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import LEAST_SHARE, LUTS, main_drift, select_neighbourhood
 
 WINDOWS = 8000
-"""Windows drawn from each image, wherever they lie wholly inside; more changed little."""
+"""Windows drawn from each image, wherever they lie wholly inside data; more changed little."""
 
 
 def train_neighbourhood(
@@ -21,7 +21,7 @@ def train_neighbourhood(
     """The classifier that reads six tables over the window around a pixel by one LUT.
 
     Args:
-        dataset: images of which every pixel is labelled; one is in memory at a time.
+        dataset: whole images; one is in memory at a time.
         size: rows and columns of the window, 3 or 5.
         max_luts: how many LUTs the user allows; None sets no limit.
         seed: of the windows drawn and of the search.
@@ -59,7 +59,10 @@ def train_neighbourhood(
 def _draw(
     image: LabelledImage, size: int, rng: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Windows, uint8 ``[WINDOWS, size, size, 3]``, and the classes of their middles, uint8 ``[WINDOWS]``."""
+    """Windows, uint8 ``[n, size, size, 3]``, and the classes of their middles, uint8 ``[n]``.
+
+    `WINDOWS` of them, or none if no labelled pixel sees data alone.
+    """
     picture, labels = image.picture, image.label_picture
     height, width = labels.shape
     if min(height, width) < size:
@@ -68,8 +71,16 @@ def _draw(
             value=f"{image.name} of {width}x{height} pixels",
             hint="give larger ones",
         )
-    rows = rng.integers(height - size + 1, size=WINDOWS)
-    columns = rng.integers(width - size + 1, size=WINDOWS)
+    halo = size // 2
+    middles = image.usable(halo)[halo : height - halo, halo : width - halo]
+    if image.scene is None:
+        rows = rng.integers(middles.shape[0], size=WINDOWS)
+        columns = rng.integers(middles.shape[1], size=WINDOWS)
+    else:
+        places = np.argwhere(middles)
+        # An image without a whole window adds nothing.
+        chosen = places[rng.integers(len(places), size=WINDOWS)] if len(places) else places
+        rows, columns = chosen.T
     reach = np.arange(size)
     windows = picture[(rows[:, None] + reach)[:, :, None], (columns[:, None] + reach)[:, None, :]]
-    return windows, labels[rows + size // 2, columns + size // 2]
+    return windows, labels[rows + halo, columns + halo]

@@ -76,6 +76,20 @@ def test_the_command_finds_its_imagery_from_the_folder_that_it_is_run_in(
     )
 
 
+def test_the_commands_read_pictures_in_the_same_way(tmp_path: Path) -> None:
+    options = CompileOptions(
+        test_images=tmp_path,
+        test_masks=tmp_path,
+        ignore=(255, -1),
+        bands=(3, 2, 1),
+        scale=(0, 0.3),
+        alpha="data",
+    )
+    said = "--ignore 255,-1 --bands 3,2,1 --scale 0:0.3 --alpha data"
+    assert command("x", options).endswith(said)
+    assert evaluation("x", options).endswith(said)
+
+
 def test_the_sample_is_the_middle_of_the_first_test_image() -> None:
     pixels = np.arange(300 * 400 * 3, dtype=np.uint32).astype(np.uint8).reshape(300, 400, 3)
     image = LabelledImage("a", pixels.reshape(-1, 3), np.zeros(300 * 400, dtype=np.uint8), (300, 400))

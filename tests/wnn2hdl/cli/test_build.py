@@ -44,7 +44,7 @@ def test_bad_usage_is_one_line_and_leaves_nothing(run: Run, file: Path, tmp_path
 
     assert "domain mode needs" in refused("--mode", "domain")
     assert "go together: --test-images and --test-masks" in refused("--test-images", tmp_path)
-    assert "a palette belongs to masks" in refused("--palette", file)
+    assert "--palette and --ignore are for masks" in refused("--palette", file)
     assert "'circle' is not one of" in refused("--target", "circle")
     assert "4 is not in the range" in refused("--edge-luts", 4)
     assert "circle" in refused("--edges", "circle")

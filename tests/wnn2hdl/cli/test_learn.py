@@ -97,3 +97,37 @@ def test_options_that_a_neighbourhood_has_no_use_for_are_refused(run: Run, tmp_p
     assert "--neighbourhood chooses the classifier itself: --rams" in train("--rams", "4")
     assert "leave --neighbourhood out" in train("--pareto")
     assert "takes 13 LUTs: 4 allowed" in train("--max-luts", "4")
+
+
+def test_pixels_left_out_are_reported_and_the_command_can_be_repeated(
+    run: Run, folders: tuple[Path, Path], tmp_path: Path
+) -> None:
+    """A quarter is transparent, and a quarter of the rest has no label."""
+    images, masks = folders
+    with Image.open(images / "a.png") as picture:
+        pixels = np.dstack([np.asarray(picture), np.full((8, 8), 255, dtype=np.uint8)])
+    labels = np.where(pixels[..., 0] > 99, 1, 0).astype(np.uint8)
+    pixels[6:, :, 3], labels[0] = 0, 7
+    save(images / "a.png", pixels)
+    save(masks / "a.png", labels)
+    words = [
+        "train",
+        "--images",
+        images,
+        "--masks",
+        masks,
+        "--bits",
+        "R7,G7",
+        "--address-bits",
+        2,
+        "--rams",
+        1,
+    ]
+    assert "holds 1, 7 besides 0" in run(*words, "-o", tmp_path / "m.json").stderr
+    done = run(*words, "--ignore", "7,#ff00ff", "--scale", "0:255", "-o", tmp_path / "m.json")
+    assert "37.50% of the pixels left out: not labelled, or no data" in done.stdout
+    training = json.loads((tmp_path / "m.json").read_text())["training"]
+    assert training["left_out"] == {"pixels": 24, "share": 0.375}
+    assert "--ignore '7,#ff00ff' --scale 0.0:255.0 --bits R7,G7" in training["command"]
+    again = run("evaluate", tmp_path / "m.json", *words[1:5], "--ignore", 7)
+    assert "37.50% of the pixels left out" in again.stdout

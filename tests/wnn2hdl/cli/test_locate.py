@@ -83,6 +83,50 @@ def test_frames_to_calibrate_on_may_lie_elsewhere(run: Run, folder: Path, tmp_pa
     assert "a window lies around a known position, and a frame has none: frame_1.jpg" in refusal
 
 
+def test_what_one_run_learned_another_takes(run: Run, folder: Path, tmp_path: Path) -> None:
+    lines = (folder / "poses.csv").read_text().splitlines()
+    some = tmp_path / "some.csv"
+    some.write_text("\n".join([lines[0], *lines[1:4]]) + "\n")
+    common = [*given(folder), "--search", "map", "--methods", "grey", "--json"]
+    learned = run("locate", *common, "--focal", 120, "--calibrate", some, "-o", tmp_path / "one")
+    assert learned.status == 0, learned.stderr
+    taking = ("--calibration", tmp_path / "one" / "calibration.json", "-o", tmp_path / "two")
+    taken = run("locate", *common, "--focal", 120, *taking)
+    assert taken.status == 0, taken.stderr
+    one, two = json.loads(learned.stdout), json.loads(taken.stdout)
+    assert list(two["methods"]) == ["grey", "grey-track"]
+    # The three frames that have calibrated are not scored in the second run, either.
+    assert one["frames"] == two["frames"] == 2
+    for figure in ("mean_m", "fixed_percent", "confidence_threshold"):
+        assert two["methods"]["grey"][figure] == one["methods"]["grey"][figure]
+    told = run("locate", *common, "--focal", 121, *taking).complaint_after_work()
+    assert "belongs to other conditions: fx was 120.0, and now is 121.0" in told
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "fault"),
+    [
+        ("poses.csv", ("latitude_deg,longitude_deg", "lat,lon"), "rename lat to latitude_deg"),
+        ("poses.csv", (".jpg,", ".jpg,7,"), "more cells than columns are named"),
+        ("poses.csv", ("pitch_deg", "yaw_deg"), "name a column twice: yaw_deg"),
+        ("poses.csv", (".jpg,-9.", ".jpg,9."), "the latitude probably lacks its sign"),
+        ("camera.toml", ("focal = 120.0", "focal = 8.8"), "probably in millimetres"),
+        ("camera.toml", ("tilt_deg = 3", "tilt_deg = -87"), "where a gimbal's pitch is -90"),
+    ],
+)
+def test_conventions_of_others_are_refused_by_name(
+    run: Run, folder: Path, tmp_path: Path, name: str, change: tuple[str, str], fault: str
+) -> None:
+    text = (folder / name).read_text()
+    assert change[0] in text
+    (tmp_path / name).write_text(text.replace(*change))
+    files = {"poses.csv": folder / "poses.csv", "camera.toml": folder / "camera.toml", name: tmp_path / name}
+    words = ["--map", folder / "map.tif", "--frames", folder / "frames", "--poses", files["poses.csv"]]
+    refusal = run("locate", *words, "--camera", files["camera.toml"], "-o", tmp_path / "out").complaint()
+    assert fault in refusal
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("stop", ["frame", "interrupt"])
 def test_no_thread_is_left_behind_when_it_ends_early(folder: Path, tmp_path: Path, stop: str) -> None:
@@ -122,7 +166,7 @@ def test_the_embedded_flight_needs_no_files(
     ("arguments", "fault"),
     [
         (["--map", "map.tif"], "these options go together: --map, --frames, --poses; give --frames, --poses"),
-        (["--focal", "750"], "the embedded flight has its own camera: --focal"),
+        (["--focal", "750"], "the embedded flight has its own camera and map: --focal"),
         (["--calibrate", "some.csv"], "the embedded flight has no file of poses"),
         (["--calibrate", "3"], "3 frames are too few to calibrate on; give at least 4"),
         (["--calibrate-frames", "."], "--calibrate-frames are those of a CSV of --calibrate"),
@@ -130,6 +174,10 @@ def test_the_embedded_flight_needs_no_files(
         (["--window", "0"], "--window"),
         (["--window", "nan"], "no finite number"),
         (["--search", "around"], "--search"),
+        (["--methods", "grey,canny"], "'canny' is none of perspective-canny, rotation-canny"),
+        (["--bands", "3,2,1"], "--bands, --scale and --alpha are for a map from a file"),
+        (["--calibration", "none.json"], "cannot read a calibration: none.json"),
+        (["--calibration", "some.json", "--calibrate", "4"], "--calibration takes what --calibrate learned"),
     ],
 )
 def test_bad_usage_is_one_line_and_status_2(

@@ -73,6 +73,16 @@ def test_foreign_imagery_is_warned_of_on_stderr(scan: Run, model: Path, tmp_path
     assert "0.00% deforested" in done.stdout
 
 
+def test_the_share_left_out_is_shown(
+    scan: Run, model: Path, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    alpha = np.full((120, 150), 255, dtype=np.uint8)
+    alpha[:30] = 0
+    Image.fromarray(np.dstack([pixels, alpha])).save(tmp_path / "a.png")
+    done = scan(model, tmp_path / "a.png", "-o", tmp_path / "out")
+    assert "25.00% of the pixels left out: no data, or masked" in done.stdout
+
+
 def test_a_sentinel_product_needs_bands_and_a_scale(scan: Run, model: Path, tmp_path: Path) -> None:
     bands = np.random.default_rng(0).integers(0, 4000, (4, 60, 50), dtype=np.uint16)
     place = {"crs": "EPSG:32720", "transform": rasterio.Affine(10, 0, 4e5, 0, -10, 9.1e6)}

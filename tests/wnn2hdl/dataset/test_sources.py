@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from wnn2hdl.dataset import CLASSES, from_masks, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import Palette, write_png
+from wnn2hdl.images import UNLABELLED, MaskFormat, Palette, write_png
 from wnn2hdl.samples import CLASSES as KINDS
 from wnn2hdl.samples import landscape
 
@@ -40,7 +41,7 @@ def test_a_palette_gives_more_classes(folders: tuple[Path, Path]) -> None:
     palette = Palette.of(KINDS)
     for seed in (1, 2):
         write_png(masks / f"s{seed}.png", palette.paint(landscape(40, 30, seed).labels))
-    dataset = from_masks(images, masks, palette)
+    dataset = from_masks(images, masks, MaskFormat(palette))
     assert dataset.classes == KINDS
     assert np.array_equal(next(iter(dataset)).labels, landscape(40, 30, 1).labels.ravel())
 
@@ -66,3 +67,33 @@ def test_samples_are_landscapes_of_successive_seeds(every_kind: bool) -> None:
 def test_a_set_of_no_samples_is_refused() -> None:
     with pytest.raises(InputError, match="at least one landscape: 0"):
         from_samples(0, 32, seed=0)
+
+
+def test_pixels_that_nobody_labelled_or_measured_are_left_out(folders: tuple[Path, Path]) -> None:
+    images, masks = folders
+    scene = landscape(40, 30, 1)
+    alpha = np.full((40, 30), 255, dtype=np.uint8)
+    alpha[:10] = 0
+    Image.fromarray(np.dstack([scene.image, alpha])).save(images / "s1.png")
+    labels = scene.deforested.astype(np.uint8)
+    labels[:, :5] = 7
+    write_png(masks / "s1.png", labels)
+    image = from_masks(images, masks, MaskFormat(ignored=frozenset({7}))).load("s1.png")
+    used = (alpha == 255) & (labels != 7)
+    assert np.array_equal(image.pixels, scene.image[used])
+    assert np.array_equal(image.labels, labels[used])
+    assert image.left_out == (~used).sum()
+    assert np.array_equal(image.picture, scene.image)
+    assert np.array_equal(image.label_picture, np.where(used, labels, UNLABELLED))
+    near = image.usable(1)
+    # A pixel beside one without data is not whole; one beside an unlabelled pixel is.
+    assert np.array_equal(near, used & (np.arange(40)[:, np.newaxis] > 10))
+
+
+def test_masks_of_a_folder_that_name_deforested_differently_are_refused(folders: tuple[Path, Path]) -> None:
+    for seed, value in ((1, 1), (2, 255)):
+        write_png(
+            folders[1] / f"s{seed}.png", landscape(40, 30, seed).deforested.astype(np.uint8) * np.uint8(value)
+        )
+    with pytest.raises(InputError, match="masks of one folder hold 1 and 255"):
+        list(from_masks(*folders))

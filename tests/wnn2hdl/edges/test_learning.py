@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.edges import boundary, canny, filter_agreement, grey, half_plane, learned
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import pair_masks, read_mask, read_rgb
+from wnn2hdl.images import MaskFormat, pair_masks, read_labels, read_rgb
 from wnn2hdl.ir import EdgeFilter
 from wnn2hdl.samples import landscape
 
@@ -82,7 +82,8 @@ def test_learned_patterns_agree_with_canny_best_on_real_pictures(realdata: Path)
     pictures = []
     for picture, mask in pair_masks(folder / "images", folder / "masks"):
         rgb = read_rgb(picture)
-        pictures.append((read_mask(mask, (512, 512)) > 0, canny(grey(rgb))))
+        labels = read_labels(mask, picture, (512, 512), MaskFormat())
+        pictures.append((labels.classes > 0, canny(grey(rgb))))
     scores = [
         filter_agreement(edge_filter, pictures[20:]).f1 or 0.0
         for edge_filter in (boundary(), half_plane(), learned(pictures[:20]))

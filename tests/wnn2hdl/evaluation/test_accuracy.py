@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, from_samples
 from wnn2hdl.encode import parse_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.evaluation.accuracy import SquareVote, evaluate, majority_labels, with_halo
+from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels, with_halo
 from wnn2hdl.evaluation.classifiers import PixelTable, model_classifier
+from wnn2hdl.images import Picture
 from wnn2hdl.ir import WisardModel
 
 
@@ -66,23 +67,72 @@ def test_a_neighbourhood_sees_the_border_repeated() -> None:
     assert with_halo(picture, 2)[:, :, 0].tolist() == [[0, 0, 0, 3, 3, 3]] * 3 + [[6, 6, 6, 9, 9, 9]] * 3
 
 
+def partly(reds: list[list[int]], labels: list[list[int]], valid: list[list[int]]) -> Dataset:
+    """An image; pixels of the label 255 are not labelled."""
+    pixels = np.zeros((*np.shape(reds), 3), dtype=np.uint8)
+    pixels[..., 0] = reds
+    picture = Picture(pixels, np.array(valid, dtype=np.bool_))
+    image = LabelledImage.of("a", picture, np.array(labels, dtype=np.uint8))
+    return Dataset(CLASSES, ("a",), lambda name: image)
+
+
+def test_what_is_left_out_is_neither_right_nor_wrong() -> None:
+    data = partly([[0, 255, 255], [0, 0, 255]], [[0, 0, 255], [0, 1, 1]], [[1, 1, 1], [1, 0, 1]])
+    result = evaluate(red_table([0, 1]), data, silent)
+    assert result.confusion.tolist() == [[[2, 1], [0, 1]]]
+    assert result.left_out.tolist() == [2]
+    assert result.left_out_share == 2 / 6
+
+
+def test_neighbours_must_be_data_and_need_no_label() -> None:
+    data = partly([[255, 0, 0, 0, 0]] * 3, [[255, 1, 0, 0, 0]] * 3, [[1, 1, 1, 1, 0]] * 3)
+    result = evaluate(LeftNeighbour(), data, silent)
+    # The fourth column is beside one that is no data.
+    assert result.confusion.tolist() == [[[3, 0], [0, 3]]]
+    assert result.left_out.tolist() == [9]
+
+
+def test_only_data_votes_in_squares_and_only_labels_make_their_truth() -> None:
+    data = partly(
+        [[255, 255], [255, 0]],
+        [[0, 255], [255, 0]],
+        [
+            [
+                0,
+                0,
+            ],
+            [0, 1],
+        ],
+    )
+    squares = Squares(side=2, share=1.0, seed=0)
+    assert evaluate(red_table([0, 1]), data, silent, squares).confusion.tolist() == [[[1, 0], [0, 0]]]
+    labelled = partly([[0, 0], [0, 0]], [[1, 255], [255, 255]], [[1, 1], [1, 1]])
+    assert majority_labels(labelled, 2).load("a").labels.tolist() == [1]
+
+
+def test_images_without_a_label_are_refused() -> None:
+    with pytest.raises(InputError, match="no pixel can be measured"):
+        evaluate(red_table([0, 1]), partly([[0]], [[255]], [[1]]), silent)
+
+
 def test_squares_go_with_the_majority_of_their_pixels() -> None:
     data = one_image([[0, 0, 255], [0, 255, 255]], [[0, 0, 1], [0, 1, 0]])
-    voter = SquareVote(red_table([0, 1]), side=2, share=1.0, seed=0)
-    assert voter.classify(next(iter(data)).picture).tolist() == [[0, 0, 1], [0, 0, 1]]
+    squares = Squares(side=2, share=1.0, seed=0)
     # Pixel by pixel two are wrong; of the squares none, the draw of labels in the right one aside.
-    assert evaluate(voter, data, silent).confusion.tolist() == [[[3, 1], [1, 1]]]
+    assert evaluate(red_table([0, 1]), data, silent, squares).confusion.tolist() == [[[3, 1], [1, 1]]]
     assert majority_labels(data, 2).load("a").label_picture.tolist() == [[0, 0, 0], [0, 0, 0]]
 
 
 def test_a_share_of_the_pixels_votes_as_the_seed_draws_it() -> None:
-    picture = np.zeros((40, 40, 3), dtype=np.uint8)
-    picture[::2, :, 0] = 255
-    votes = {
-        SquareVote(red_table([0, 1]), side=20, share=0.5, seed=seed).classify(picture).tobytes()
-        for seed in (0, 0, 1, 2, 3)
-    }
-    assert 1 < len(votes) <= 4
+    reds = np.zeros((40, 40), dtype=np.int64)
+    reds[::2] = 255
+    data = one_image(reds.tolist(), (np.arange(1600).reshape(40, 40) // 20 % 2).tolist())
+    votes = [
+        evaluate(red_table([0, 1]), data, silent, Squares(side=20, share=0.5, seed=seed)).confusion.tolist()
+        for seed in (0, 0, *range(1, 9))
+    ]
+    assert votes[0] == votes[1]
+    assert any(vote != votes[0] for vote in votes)
 
 
 def test_other_classes_than_the_labels_are_refused() -> None:

@@ -1,6 +1,7 @@
 """Pictures and masks are read as they are, or refused with one clear line."""
 
 import struct
+import warnings
 from pathlib import Path
 
 import cv2
@@ -9,18 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from PIL import Image, TiffImagePlugin
+from PIL import Image
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import (
-    Palette,
-    list_images,
-    picture_size,
-    read_labels,
-    read_mask,
-    read_rgb,
-    write_png,
-)
+from wnn2hdl.images import list_images, picture_size, read_picture, read_rgb, whole_windows
+from wnn2hdl.raster import Reading
 
 RGB = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)
 
@@ -69,64 +63,62 @@ def test_opaque_alpha_is_dropped(tmp_path: Path) -> None:
     assert np.array_equal(read_rgb(save(tmp_path / "a.png", opaque)), RGB)
 
 
-def test_transparent_pixels_are_refused(tmp_path: Path) -> None:
+def test_transparent_pixels_are_left_out(tmp_path: Path) -> None:
     alpha = np.full(RGB.shape[:2], 255, dtype=np.uint8)
     alpha[0, :2] = 254
     path = save(tmp_path / "a.png", np.dstack([RGB, alpha]))
-    with pytest.raises(InputError, match="2 pixels of the picture are transparent"):
+    assert np.array_equal(read_picture(path).valid, alpha == 255)
+    assert read_picture(path).left_out == 2
+    assert read_picture(path, Reading(alpha="data")).left_out == 0
+    with pytest.raises(InputError, match="2 pixels of the picture hold no data, and a whole one is needed"):
         read_rgb(path)
 
 
-@pytest.mark.parametrize("array", [RGB, RGB[..., 0]], ids=["rgb", "grey"])
-def test_pixels_without_data_are_refused(tmp_path: Path, array: NDArray[np.uint8]) -> None:
-    path, tags = tmp_path / "a.tif", TiffImagePlugin.ImageFileDirectory_v2()
-    tags[42113] = "7"  # GDAL_NODATA
-    holed = np.where(array == 7, np.uint8(8), array)
-    holed[0, 0] = 8 if array.ndim == 2 else (7, 7, 8)
-    Image.fromarray(holed).save(path, tiffinfo=tags)
-    assert read_rgb(path).shape == RGB.shape
-    holed[0, :2] = 7
-    Image.fromarray(holed).save(path, tiffinfo=tags)
-    with pytest.raises(InputError, match="2 pixels of the picture hold no data"):
-        read_rgb(path)
+def test_near_infrared_in_the_alpha_of_a_png_is_questioned(tmp_path: Path) -> None:
+    infrared = np.arange(54, dtype=np.uint8).reshape(6, 9) + 100
+    path = save(tmp_path / "a.png", np.dstack([RGB, infrared]))
+    with pytest.raises(InputError, match="say --alpha data"):
+        read_picture(path)
+    assert read_picture(path, Reading(alpha="mask")).left_out == 54
 
 
 @pytest.mark.parametrize("channels", [1, 3])
-def test_a_png_of_16_bits_is_refused(tmp_path: Path, channels: int) -> None:
-    with pytest.raises(InputError, match=r"samples of 16 bits: .*a\.png; scale it to 8 bits"):
-        read_rgb(deep_png(tmp_path / "a.png", channels))
+def test_a_png_of_16_bits_needs_a_scale(tmp_path: Path, channels: int) -> None:
+    path = deep_png(tmp_path / "a.png", channels)
+    with pytest.raises(InputError, match=r"uint16, and how they become 0 to 255 .*a\.png"):
+        read_rgb(path)
+    assert read_rgb(path, Reading(scale=(0, 97 * 53 * channels))).max() == 255
 
 
-def test_a_planar_tiff_of_16_bits_is_refused(tmp_path: Path) -> None:
-    """Pillow opens one as 8-bit RGB and mixes high and low bytes up."""
-    tags = [(256, 3, 1, 9), (257, 3, 1, 6), (262, 3, 1, 2), (277, 3, 1, 3), (284, 3, 1, 2)]
-    plane = 9 * 6 * 2
-    data = 8 + 2 + 12 * 8 + 4
-    head = struct.pack("<2sHIH", b"II", 42, 8, 8)
-    entries = sorted(
-        [*tags, (258, 3, 3, data), (273, 4, 3, data + 6), (279, 4, 3, data + 18)], key=lambda entry: entry[0]
-    )
-    body = b"".join(struct.pack("<HHII", *entry) for entry in entries) + struct.pack("<I", 0)
-    start = data + 30
-    extra = struct.pack("<3H3I3I", 16, 16, 16, *(start + plane * i for i in range(3)), *[plane] * 3)
-    (tmp_path / "a.tif").write_bytes(head + body + extra + bytes(3 * plane))
-    with pytest.raises(InputError, match="samples of 16 bits"):
-        read_rgb(tmp_path / "a.tif")
+def test_a_mask_beside_a_png_counts(tmp_path: Path) -> None:
+    rasterio = pytest.importorskip("rasterio")
+    path, mask = save(tmp_path / "a.png", RGB), tmp_path / "a.png.msk"
+    Image.fromarray(np.uint8(255) * (RGB[..., 0] > 99)).save(mask, format="TIFF")
+    with pytest.raises(InputError, match=r"does not say which of its bands it is for: .*a\.png\.msk"):
+        read_picture(path)
+    with warnings.catch_warnings(action="ignore"), rasterio.open(mask, "r+") as target:
+        target.update_tags(INTERNAL_MASK_FLAGS_1=2, INTERNAL_MASK_FLAGS_2=2, INTERNAL_MASK_FLAGS_3=2)
+    assert np.array_equal(read_picture(path).valid, RGB[..., 0] > 99)
+    assert np.array_equal(read_picture(path).pixels, RGB)
 
 
-def test_float_pictures_are_refused(tmp_path: Path) -> None:
-    Image.fromarray(np.zeros((3, 3), dtype=np.float32)).save(tmp_path / "a.tif")
-    with pytest.raises(InputError, match="samples of 32 bits"):
-        read_rgb(tmp_path / "a.tif")
-
-
-def test_pictures_are_turned_upright(tmp_path: Path) -> None:
+def test_a_turned_picture_is_shown_upright_unless_it_lies_on_the_earth(tmp_path: Path) -> None:
     exif = Image.Exif()
     exif[0x0112] = 6
-    for name in ("a.png", "a.tif"):
-        Image.fromarray(RGB).save(tmp_path / name, exif=exif)
-        assert np.array_equal(read_rgb(tmp_path / name), np.rot90(RGB, -1))
-        assert picture_size(tmp_path / name) == (9, 6)
+    Image.fromarray(RGB).save(tmp_path / "a.png", exif=exif)
+    assert np.array_equal(read_rgb(tmp_path / "a.png"), np.rot90(RGB, -1))
+    assert picture_size(tmp_path / "a.png") == (9, 6)
+    Image.fromarray(RGB).save(tmp_path / "a.tif", exif=exif)
+    with pytest.raises(InputError, match="orientation 6"):
+        read_rgb(tmp_path / "a.tif")
+
+
+def test_windows_are_whole_where_all_they_see_is_data() -> None:
+    valid = np.ones((5, 6), dtype=np.bool_)
+    valid[2, 2] = False
+    assert np.argwhere(~whole_windows(valid, 1)).tolist() == [[r, c] for r in (1, 2, 3) for c in (1, 2, 3)]
+    assert whole_windows(np.ones((2, 2), dtype=np.bool_), 2).all()
+    assert whole_windows(valid, 0) is valid
 
 
 def test_a_text_file_named_png_is_no_picture(tmp_path: Path) -> None:
@@ -156,12 +148,41 @@ def test_truncated_pictures_give_one_line(
     assert name in str(caught.value)
 
 
-def test_a_picture_beyond_the_safety_limit_is_refused(tmp_path: Path) -> None:
-    path = save(tmp_path / "a.bmp", RGB)
-    content = bytearray(path.read_bytes())
-    content[18:26] = struct.pack("<ii", 100_000, 100_000)
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.bmp"])
+@given(
+    share=st.floats(0.2, 1), flips=st.lists(st.tuples(st.floats(0, 0.999), st.integers(1, 255)), max_size=4)
+)
+@settings(max_examples=40, deadline=None)
+def test_damaged_pictures_are_read_or_give_one_line(
+    tmp_path_factory: pytest.TempPathFactory, name: str, share: float, flips: list[tuple[float, int]]
+) -> None:
+    path = save(tmp_path_factory.mktemp("damaged") / name, np.tile(RGB, (4, 4, 1)))
+    content = bytearray(path.read_bytes())[: int(share * path.stat().st_size)]
+    for place, change in flips:
+        content[int(place * len(content))] ^= change
     path.write_bytes(content)
-    with pytest.raises(InputError, match=r"too large to be read at once: .*; cut it into tiles"):
+    complaint = ""
+    try:
+        read_picture(path)
+    except InputError as error:
+        complaint = str(error)
+    assert not complaint or (name in complaint and "\n" not in complaint)
+
+
+@pytest.mark.parametrize("name", ["a.bmp", "a.tif"])
+def test_a_picture_beyond_the_safety_limit_is_refused(tmp_path: Path, name: str) -> None:
+    if name == "a.bmp":
+        path = save(tmp_path / name, RGB)
+        content = bytearray(path.read_bytes())
+        content[18:26] = struct.pack("<ii", 100_000, 100_000)
+        path.write_bytes(content)
+    else:
+        rasterio = pytest.importorskip("rasterio")
+        path, size = tmp_path / name, {"height": 20_000, "width": 20_000, "count": 1, "dtype": "uint8"}
+        place = {"crs": "EPSG:32720", "transform": rasterio.Affine(1, 0, 5, 0, -1, 5)}
+        options = {"driver": "GTiff", "sparse_ok": True, "tiled": True}
+        rasterio.open(path, "w", **options, **size, **place).close()
+    with pytest.raises(InputError, match=r"too large to be read at once, at most 178,956,970 .*; cut it"):
         read_rgb(path)
 
 
@@ -170,54 +191,6 @@ def test_a_large_map_is_read_without_a_warning(tmp_path: Path, monkeypatch: pyte
     path = save(tmp_path / "a.png", RGB)
     monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", RGB.size // 3 - 1)
     assert read_rgb(path).shape == RGB.shape
-
-
-@pytest.mark.parametrize(("value", "label"), [(0, 0), (1, 1), (255, 1)])
-def test_masks_are_zero_or_not(tmp_path: Path, value: int, label: int) -> None:
-    path = save(tmp_path / "m.png", np.full((4, 5), value, dtype=np.uint8))
-    mask = read_mask(path, (4, 5))
-    assert mask.dtype == np.uint8
-    assert (mask == label).all()
-
-
-def test_a_mask_of_another_size_names_both_sizes(tmp_path: Path) -> None:
-    path = save(tmp_path / "m.png", RGB[..., 0])
-    with pytest.raises(InputError, match=r"different sizes: .*m\.png is 9x6, the picture 512x256"):
-        read_mask(path, (256, 512))
-
-
-def test_a_jpeg_mask_is_refused(tmp_path: Path) -> None:
-    path = save(tmp_path / "m.jpg", RGB[..., 0])
-    with pytest.raises(InputError, match="a JPEG cannot be a mask"):
-        read_mask(path, (6, 9))
-
-
-@pytest.mark.parametrize(
-    ("palette", "refused"), [([0, 0, 0, 255, 0, 0], False), ([255, 255, 255, 0, 0, 0], True)]
-)
-def test_a_palette_mask_must_not_have_two_readings(tmp_path: Path, palette: list[int], refused: bool) -> None:
-    picture = Image.fromarray(np.array([[0, 1, 1]], dtype=np.uint8)).convert("P")
-    picture.putpalette(palette)
-    picture.save(tmp_path / "m.png")
-    if refused:
-        with pytest.raises(InputError, match="palette does not give black"):
-            read_mask(tmp_path / "m.png", (1, 3))
-    else:
-        assert read_mask(tmp_path / "m.png", (1, 3)).tolist() == [[0, 1, 1]]
-
-
-def test_painting_and_reading_labels_are_inverse(tmp_path: Path) -> None:
-    palette = Palette.of(("forest", "pasture", "river", "swamp", "town"))
-    labels = np.random.default_rng(1).integers(0, 5, (7, 8), dtype=np.uint8)
-    write_png(tmp_path / "m.png", palette.paint(labels))
-    assert np.array_equal(read_labels(tmp_path / "m.png", (7, 8), palette), labels)
-
-
-def test_a_colour_outside_the_palette_is_named(tmp_path: Path) -> None:
-    palette = Palette(("forest", "river"), ((0, 0, 0), (0, 0, 255)))
-    path = save(tmp_path / "m.png", np.array([[[0, 0, 255], [1, 2, 3]]], dtype=np.uint8))
-    with pytest.raises(InputError, match=r"1 pixels of the mask .* not in the palette: .*m\.png \(#010203\)"):
-        read_labels(path, (1, 2), palette)
 
 
 @pytest.mark.realdata

@@ -11,7 +11,7 @@ PATH = Path("scene.tif")
 
 
 def bands(*interpretations: str, chosen: tuple[int, ...] | None = None) -> tuple[int, ...]:
-    return choose_channels(PATH, interpretations, chosen).indexes
+    return choose_channels(PATH, interpretations, bands=chosen).indexes
 
 
 def test_what_the_file_states_is_followed_whatever_the_order() -> None:
@@ -54,7 +54,7 @@ def test_the_user_chooses() -> None:
     many = ("gray", *["undefined"] * 12)
     assert bands(*many, chosen=(4, 3, 2)) == (4, 3, 2)
     assert bands(*many, chosen=(8,)) == (8,)
-    note = choose_channels(PATH, ("gray", "undefined", "undefined"), (3, 2, 1)).note
+    note = choose_channels(PATH, ("gray", "undefined", "undefined"), bands=(3, 2, 1)).note
     assert note == ""
 
 

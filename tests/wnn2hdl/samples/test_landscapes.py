@@ -7,7 +7,7 @@ import pytest
 
 from wnn2hdl.dataset import from_masks, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import Palette
+from wnn2hdl.images import MaskFormat, Palette
 from wnn2hdl.samples.landscapes import write_landscapes
 
 
@@ -19,7 +19,9 @@ def silent(step: str, done: int, total: int) -> None:
 def test_the_files_hold_the_embedded_data_set(tmp_path: Path, every_kind: bool) -> None:
     write_landscapes(tmp_path, 2, 48, seed=5, progress=silent)
     palette = Palette.read(tmp_path / "palette.json") if every_kind else None
-    files = from_masks(tmp_path / "images", tmp_path / ("kinds" if every_kind else "masks"), palette)
+    files = from_masks(
+        tmp_path / "images", tmp_path / ("kinds" if every_kind else "masks"), MaskFormat(palette)
+    )
     embedded = from_samples(2, 48, seed=5, every_kind=every_kind)
     assert files.classes == embedded.classes
     for written, made in zip(files, embedded, strict=True):

@@ -19,9 +19,9 @@ from wnn2hdl.emit import write_manifest
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import evaluate
 from wnn2hdl.evaluation.classifiers import model_classifier
-from wnn2hdl.images import read_rgb
+from wnn2hdl.images import UNLABELLED, Picture, read_rgb
 from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, WisardModel, pixel_encoder
-from wnn2hdl.training.neighbourhood import train_neighbourhood
+from wnn2hdl.training.neighbourhood import _draw, train_neighbourhood
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -156,3 +156,20 @@ def test_a_design_survives_its_file(neighbourhood_build: Path, tmp_path: Path) -
     Design.load(neighbourhood_build).save(tmp_path)
     for name in ("design.json", "model.json"):
         assert (tmp_path / name).read_bytes() == (neighbourhood_build / name).read_bytes()
+
+
+def test_windows_with_a_pixel_that_is_no_data_are_not_drawn() -> None:
+    pixels = np.full((30, 30, 3), 10, dtype=np.uint8)
+    valid = np.ones((30, 30), dtype=np.bool_)
+    valid[:, 12:] = False
+    pixels[~valid] = 255
+    classes = np.zeros((30, 30), dtype=np.uint8)
+    classes[:4] = UNLABELLED
+    windows, labels = _draw(
+        LabelledImage.of("a", Picture(pixels, valid), classes), 3, np.random.default_rng(0)
+    )
+    assert len(windows) == len(labels) > 0
+    assert (windows == 10).all()
+    assert (labels == 0).all()
+    nothing = LabelledImage.of("a", Picture(pixels, ~valid & valid), classes)
+    assert len(_draw(nothing, 3, np.random.default_rng(0))[0]) == 0

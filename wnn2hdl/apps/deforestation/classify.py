@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.cleanup import despeckle
-from wnn2hdl.apps.deforestation.source import Source
 from wnn2hdl.apps.deforestation.windows import Window
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.evaluation.squares import vote
+from wnn2hdl.images import Source, whole_windows
 from wnn2hdl.raster import NODATA
 
 _STRIP_PIXELS = 1 << 17
@@ -118,7 +118,10 @@ def unpack(result: bytes, window: Window) -> NDArray[np.uint8]:
 def _read(
     source: Source, top: int, left: int, bottom: int, right: int, halo: int
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_] | None]:
-    """The picture from (top, left) to before (bottom, right) with its halo, and what is valid without it."""
+    """The picture from (top, left) to before (bottom, right) with its halo, and what is valid without it.
+
+    A pixel whose halo is not all data is not valid.
+    """
     first, start = max(top - halo, 0), max(left - halo, 0)
     last, end = min(bottom + halo, source.height), min(right + halo, source.width)
     picture, valid = source.read(first, start, last - first, end - start)
@@ -128,7 +131,7 @@ def _read(
         (0, 0),
     ]
     if valid is not None:
-        valid = valid[top - first : bottom - first, left - start : right - start]
+        valid = whole_windows(valid, halo)[top - first : bottom - first, left - start : right - start]
     return np.pad(picture, beyond, mode="edge") if halo else picture, valid
 
 

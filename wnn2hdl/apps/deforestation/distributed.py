@@ -11,10 +11,10 @@ from functools import lru_cache
 from pathlib import Path
 
 from wnn2hdl.apps.deforestation.classify import WindowResult, classify_window
-from wnn2hdl.apps.deforestation.source import Source, open_source
 from wnn2hdl.apps.deforestation.task import Task
 from wnn2hdl.apps.deforestation.windows import Window
 from wnn2hdl.errors import ToolError
+from wnn2hdl.images import Source, open_picture
 from wnn2hdl.raster import Reading
 from wnn2hdl.tools.cluster import run_on_cluster
 
@@ -57,4 +57,4 @@ def _classify(task: Task, window: Window) -> WindowResult:
 @lru_cache(maxsize=1)
 def _open(path: Path, reading: Reading, token: str) -> Source:  # noqa: ARG001  # part of the key
     """A worker keeps a scan's picture open from window to window."""
-    return open_source(path, reading)
+    return open_picture(path, reading)

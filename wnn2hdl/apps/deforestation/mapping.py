@@ -9,10 +9,9 @@ import numpy as np
 
 from wnn2hdl.apps.deforestation.classify import WindowResult, unpack
 from wnn2hdl.apps.deforestation.journal import Journal
-from wnn2hdl.apps.deforestation.source import Source
 from wnn2hdl.apps.deforestation.task import Task
 from wnn2hdl.apps.deforestation.windows import Window, cut
-from wnn2hdl.images import Palette
+from wnn2hdl.images import Palette, Source
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import ClassWriter
 

@@ -33,6 +33,7 @@ class ScanOptions:
         return {
             "bands": list(reading.bands) if reading.bands else None,
             "scale": list(reading.scale) if reading.scale else None,
+            "alpha": reading.alpha,
             "mask": str(reading.mask) if reading.mask else None,
             **asdict(self.method),
             "minimum_pixels": self.minimum_pixels,

@@ -34,7 +34,6 @@ from wnn2hdl.apps.deforestation.output import (
 )
 from wnn2hdl.apps.deforestation.overlay import overlay_palette, write_overlay
 from wnn2hdl.apps.deforestation.polygons import write_polygons
-from wnn2hdl.apps.deforestation.source import Source
 from wnn2hdl.apps.deforestation.summary import (
     change_figures,
     class_figures,
@@ -50,9 +49,9 @@ from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.files import made_folder, read_json, write_json, write_text
-from wnn2hdl.images import by_stem
+from wnn2hdl.images import Source, by_stem, open_picture
 from wnn2hdl.progress import Progress
-from wnn2hdl.raster import NODATA, RasterReader, add_overviews, same_grid
+from wnn2hdl.raster import NODATA, add_overviews, same_grid
 
 _PARTS = 1000
 """How finely it is told how far a folder's picture is."""
@@ -124,7 +123,7 @@ class Scanner:
                 return self._folder(picture, pictures, output)
         reading = replace(self.options.reading, mask=before_mask)
         earlier = replace(self, options=replace(self.options, reading=reading))
-        after = RasterReader(picture, self.options.reading)
+        after = open_picture(picture, self.options.reading)
         # That pixels have no area is told before anything is written.
         files, limit = after.files, self._minimum_pixels(after)
         if before is not None:
@@ -140,7 +139,7 @@ class Scanner:
             summary |= {"before": str(before), "change": self._change(output, limit)}
             return self._finish(output, summary)
 
-    def _check_earlier(self, before: Path, picture: Path, after: RasterReader) -> tuple[Path, ...]:
+    def _check_earlier(self, before: Path, picture: Path, after: Source) -> tuple[Path, ...]:
         """Refuse a picture of an earlier date that does not fit the later one; all its files."""
         if self.options.vector == "none":
             raise InputError(
@@ -148,7 +147,7 @@ class Scanner:
                 value="--vector none",
                 hint="choose geojson or gpkg",
             )
-        earlier = RasterReader(before, self.options.reading)
+        earlier = open_picture(before, self.options.reading)
         sizes = [(x.height, x.width) for x in (earlier, after)]
         if sizes[0] != sizes[1] or not same_grid(earlier.georeference, after.georeference, *sizes[0]):
             raise InputError(
@@ -213,7 +212,7 @@ class Scanner:
             known = read_json(output / SUMMARY_FILE, "a summary")
         except ModelFileError:
             known = {}
-        identity = self._identity(RasterReader(picture, self.options.reading).files)
+        identity = self._identity(open_picture(picture, self.options.reading).files)
         if known.get("identity") == identity and (output / CLASSES_FILE).is_file():
             return known
         with made_folder(output):
@@ -298,8 +297,7 @@ class Scanner:
 
     def _identity(self, files: Iterable[Path]) -> dict[str, Any]:
         """What decides the result, as far as it can be told without reading all of the picture's files."""
-        # A mosaic's parts may lie where only GDAL can look.
-        states = {file.absolute(): file.stat() for file in files if file.is_file()}
+        states = {file.absolute(): file.stat() for file in files}
         return {
             "version": wnn2hdl.__version__,
             "files": [[str(file), state.st_size, state.st_mtime_ns] for file, state in states.items()],

@@ -5,8 +5,8 @@ from pathlib import Path
 from uuid import uuid4
 
 from wnn2hdl.apps.deforestation.classify import Method
-from wnn2hdl.apps.deforestation.source import Source, open_source
 from wnn2hdl.evaluation.classifiers import PictureClassifier
+from wnn2hdl.images import Source, open_picture
 from wnn2hdl.raster import Reading
 
 
@@ -30,4 +30,4 @@ class Task:
 
     def open(self) -> Source:
         """Open the picture."""
-        return open_source(self.path, self.reading)
+        return open_picture(self.path, self.reading)

@@ -10,26 +10,23 @@ tilt that is constant over stretches of the flight.
 """
 
 from bisect import bisect
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.camera import MAX_TILT_DEG, Camera
-from wnn2hdl.apps.navigation.geometry import ground_patch
+from wnn2hdl.apps.navigation.counter import time_among
+from wnn2hdl.apps.navigation.explain import require_fit, require_stated_meaning
 from wnn2hdl.apps.navigation.grid import MapGrid
-from wnn2hdl.apps.navigation.matching import MapIndex, Window
-from wnn2hdl.apps.navigation.poses import Pose, frame_numbers
+from wnn2hdl.apps.navigation.matching import MapIndex
+from wnn2hdl.apps.navigation.poses import Pose
+from wnn2hdl.apps.navigation.sights import HEADINGS_DEG, WINDOW_M, Lookout, Sight, steps
 from wnn2hdl.errors import InputError
-
-WINDOW_M = 60.0
-"""How far a match may be from the truth: as much as 27 degrees of tilt make at 120 m."""
-
-HEADINGS_DEG = tuple(range(-60, 61, 6))
-"""Errors of the logged heading that are tried; a match survives 3 degrees more or less."""
+from wnn2hdl.progress import Progress
 
 HEADING_TOLERANCE_DEG = 6.0
 """Headings are searched if half of the log's or more are this much off their median error."""
@@ -48,25 +45,32 @@ _ROUNDS = 2
 
 
 @dataclass(frozen=True)
-class Sight:
-    """A calibration frame's match.
+class Fit:
+    """How well calibration frames match the map where they were.
 
     Attributes:
-        ahead_m: the match is so far ahead of the truth, along the heading that fits best.
-        right_m: so far to the right of it.
-        heading_error_deg: what has to be added to the logged heading.
-        score: normalised correlation of the grey levels.
+        matched: frames that match at all.
+        mean_miss_m: mean distance between match and truth.
+        median_miss_m: its median.
+        mean_score: mean normalised correlation of the grey levels.
     """
 
-    ahead_m: float
-    right_m: float
-    heading_error_deg: float
-    score: float
+    matched: int
+    mean_miss_m: float
+    median_miss_m: float
+    mean_score: float
 
-    @property
-    def miss_m(self) -> float:
-        """Distance between match and truth."""
-        return float(np.hypot(self.ahead_m, self.right_m))
+    @classmethod
+    def of(cls, sights: Sequence[Sight | None]) -> Self:
+        """Of frames of which at least one matches."""
+        seen = [sight for sight in sights if sight]
+        misses = [sight.miss_m for sight in seen]
+        return cls(
+            len(seen),
+            float(np.mean(misses)),
+            float(np.median(misses)),
+            float(np.mean([sight.score for sight in seen])),
+        )
 
 
 @dataclass(frozen=True)
@@ -78,15 +82,15 @@ class Calibration:
         cameras: the camera at each of these frames; they differ in tilt only.
         heading_search_deg: headings up to this much off the logged one have to be searched; 0 if the log
             is good.
-        before: the frames' matches with the camera as given.
+        before: how the frames match with the camera as given.
         after: the same with the fitted one.
     """
 
     frames: tuple[str, ...]
     cameras: tuple[Camera, ...]
     heading_search_deg: float
-    before: tuple[Sight, ...]
-    after: tuple[Sight, ...]
+    before: Fit
+    after: Fit
 
     def cameras_at(self, frame: str) -> tuple[Camera, ...]:
         """The cameras that may have taken a frame: of the stretch it lies in; between two, of either.
@@ -96,10 +100,10 @@ class Calibration:
         """
         if frame in self.frames:
             return (self.cameras[self.frames.index(frame)],)
-        numbers = frame_numbers((*self.frames, frame))
-        if numbers is None:
+        times = time_among(self.frames, frame)
+        if times is None:
             return tuple(dict.fromkeys(self.cameras))
-        after = bisect(numbers[:-1], numbers[-1])
+        after = bisect(*times)
         return tuple(dict.fromkeys(self.cameras[max(after - 1, 0) : after + 1]))
 
     @property
@@ -120,8 +124,8 @@ class Calibration:
             "twist_deg": camera.twist_deg,
             "tilts": [{"from_frame": frame, "tilt_deg": tilt} for frame, tilt in self.stretches],
             "heading_search_deg": self.heading_search_deg,
-            "before": _summary(self.before),
-            "after": _summary(self.after),
+            "before": asdict(self.before),
+            "after": asdict(self.after),
         }
 
 
@@ -131,7 +135,7 @@ def calibrate(
     frames: Sequence[NDArray[np.uint8]],
     poses: Sequence[Pose],
     camera: Camera,
-    progress: Callable[[int, int], None],
+    progress: Progress,
 ) -> Calibration:
     """Fit gimbal, focal length, twist, lean and tilt.
 
@@ -141,10 +145,11 @@ def calibrate(
         frames: uint8 ``[height, width]`` each, grey.
         poses: of the frames, at least `MIN_FRAMES`, in the order of flight.
         camera: first guess; its focal length good to 10 %.
-        progress: told how many steps of how many are done.
+        progress: told how many frames of how many have been looked for.
 
     Raises:
-        InputError: too few frames, or most of them show nothing that is on the map.
+        InputError: too few frames, or most of them show nothing that is on the map; the log or the camera is
+            probably given in another convention.
     """
     if len(poses) < MIN_FRAMES:
         raise InputError(
@@ -152,73 +157,43 @@ def calibrate(
             value=len(poses),
             hint="calibrate on more frames",
         )
-    fit = _Fit(grid, MapIndex(grey_map, grid.valid), list(frames), list(poses))
-    done = iter(range(1, 100))
-    total = 4 + 2 * _ROUNDS
+    lookout = Lookout(grid, MapIndex(grey_map, grid.valid), frames, poses, lambda: None)
+    require_stated_meaning(lookout, camera, progress)
+    passes = 5 + _ROUNDS * (1 + len(SCALES))
+    fit = _Fitting(replace(lookout, looked=steps(progress, "calibration", passes * len(poses))))
 
-    sights = fit.sights([camera] * len(poses), HEADINGS_DEG, WINDOW_M)
+    sights = fit.lookout.sights([camera] * len(poses), HEADINGS_DEG)
     errors = np.array([sight.heading_error_deg for sight in sights if sight])
     typical = float(np.median(np.abs(errors - np.median(errors)))) if errors.size else 0.0
     free_heading = typical >= HEADING_TOLERANCE_DEG
     logged = HEADINGS_DEG if free_heading else (0.0,)
-    progress(next(done), total)
     guesses = []
     for stabilised in (False, True):
         cameras = [replace(camera, stabilised=stabilised)] * len(poses)
-        sights = fit.sights(cameras, logged, WINDOW_M)
+        sights = fit.lookout.sights(cameras, logged)
         guesses.append((fit.spread(sights), cameras, sights))
-        progress(next(done), total)
     before = guesses[camera.stabilised][2]
     _, cameras, _ = min(guesses, key=lambda each: each[0])
     for _ in range(_ROUNDS):
-        sights = fit.sights(cameras, HEADINGS_DEG if free_heading else (-3.0, 0.0, 3.0), WINDOW_M)
+        sights = fit.lookout.sights(cameras, HEADINGS_DEG if free_heading else (-3.0, 0.0, 3.0))
         cameras = fit.mounted(cameras, sights)
-        progress(next(done), total)
         headings = [sight.heading_error_deg if sight and free_heading else 0.0 for sight in sights]
         cameras = fit.scaled(cameras, headings)
-        progress(next(done), total)
-    cameras = fit.mounted(cameras, fit.sights(cameras, logged, WINDOW_M))
-    after = fit.sights(cameras, logged, WINDOW_M)
-    progress(total, total)
+    cameras = fit.mounted(cameras, fit.lookout.sights(cameras, logged))
+    after = fit.lookout.sights(cameras, logged)
+    require_fit(after)
     return Calibration(
-        tuple(pose.frame for pose in fit.poses),
+        tuple(pose.frame for pose in poses),
         tuple(cameras),
         float(np.ceil(typical / 6) * 18) if free_heading else 0.0,
-        tuple(sight for sight in before if sight),
-        tuple(sight for sight in after if sight),
+        Fit.of(before),
+        Fit.of(after),
     )
 
 
 @dataclass(frozen=True)
-class _Fit:
-    grid: MapGrid
-    index: MapIndex
-    frames: list[NDArray[np.uint8]]
-    poses: list[Pose]
-
-    def sight(self, number: int, camera: Camera, headings: Sequence[float], window_m: float) -> Sight | None:
-        """The best match of a frame over some headings."""
-        pose, best = self.poses[number], None
-        row, column = (float(axis) for axis in self.grid.to_pixel(pose.latitude_deg, pose.longitude_deg))
-        for error in headings:
-            turned = replace(pose, yaw_deg=pose.yaw_deg + error)
-            patch = ground_patch(self.frames[number], turned, camera, self.grid.gsd_m)
-            place = row - patch.nadir_row, column - patch.nadir_col
-            window = Window.around(*place, window_m / self.grid.gsd_m)
-            match = self.index.search(patch.image, patch.valid, "ncc", window)
-            if match is None or (best is not None and match.score <= best.score):
-                continue
-            north, east = (place[0] - match.row) * patch.gsd_m, (match.col - place[1]) * patch.gsd_m
-            course = np.radians(turned.yaw_deg + camera.twist_deg)
-            ahead = north * np.cos(course) + east * np.sin(course)
-            right = east * np.cos(course) - north * np.sin(course)
-            best = Sight(float(ahead), float(right), float(error), match.score)
-        return best
-
-    def sights(
-        self, cameras: Sequence[Camera], headings: Sequence[float], window_m: float
-    ) -> list[Sight | None]:
-        return [self.sight(i, camera, headings, window_m) for i, camera in enumerate(cameras)]
+class _Fitting:
+    lookout: Lookout
 
     def spread(self, sights: Sequence[Sight | None]) -> float:
         """What no mount explains: how far, typically, matches are from the middle of their stretch."""
@@ -240,7 +215,7 @@ class _Fit:
         for i in seen:
             sight = sights[i]
             assert sight is not None
-            height = self.poses[i].height_m
+            height = self.lookout.poses[i].height_m
             tilts.append(cameras[i].tilt_deg + np.degrees(np.arctan2(sight.ahead_m, height)))
             leans.append(cameras[i].lean_deg - np.degrees(np.arctan2(sight.right_m, height)))
             twists.append(cameras[i].twist_deg + sight.heading_error_deg)
@@ -257,7 +232,7 @@ class _Fit:
         scores = []
         for scale in SCALES:
             sights = [
-                self.sight(
+                self.lookout.sight(
                     i, replace(camera, fx=camera.fx * scale, fy=camera.fy * scale), [heading], WINDOW_M / 3
                 )
                 for i, (camera, heading) in enumerate(zip(cameras, headings, strict=True))
@@ -283,7 +258,8 @@ def _steps(values: NDArray[np.float64]) -> NDArray[np.float64]:
     def cost(bounds: list[int]) -> float:
         return float(np.abs(values - model(bounds)).sum())
 
-    while True:
+    # Each round adds a bound; there is room for so many.
+    for _ in range(len(values) // STRETCH_FRAMES):
         finer = [
             sorted([*bounds, cut])
             for i, j in pairwise(bounds)
@@ -291,14 +267,6 @@ def _steps(values: NDArray[np.float64]) -> NDArray[np.float64]:
         ]
         best = min(finer, key=cost, default=bounds)
         if cost(best) >= (1 - STRETCH_GAIN) * cost(bounds):
-            return model(bounds)
+            break
         bounds = best
-
-
-def _summary(sights: Sequence[Sight]) -> dict[str, float]:
-    return {
-        "matched": len(sights),
-        "mean_miss_m": float(np.mean([sight.miss_m for sight in sights])),
-        "median_miss_m": float(np.median([sight.miss_m for sight in sights])),
-        "mean_score": float(np.mean([sight.score for sight in sights])),
-    }
+    return model(bounds)

@@ -17,7 +17,13 @@ MAX_TILT_DEG = 80.0
 _SHAPE_TOLERANCE = 0.01
 """Relative: whole pixels change the ratio of the sides a little, as from 5472x3078 to 1000x562."""
 
-_KEYS = frozenset(
+WIDEST_FOCAL_SHARE = 0.2
+"""Of the frame's longer side: a lens of 136 degrees, beyond what the pinhole model can straighten."""
+
+LEAST_PRINCIPAL_SHARE = 0.2
+"""Of the frame's width and height: so near to the first pixel, a principal point is an offset or a share."""
+
+KEYS = frozenset(
     {
         "focal",
         "fx",
@@ -33,6 +39,8 @@ _KEYS = frozenset(
         "stabilised",
     }
 )
+"""Of the table in a camera's file."""
+
 _FORM = "write [camera] with focal (or fx, fy, cx, cy), width and height, in pixels"
 
 
@@ -84,6 +92,8 @@ class Camera:
             raise InputError(
                 "the principal point is outside the frame",
                 value=f"({self.cx:g}, {self.cy:g}) of {self.width}x{self.height}",
+                hint="count cx and cy from the first pixel: an offset from the middle would be "
+                f"({(self.width - 1) / 2 + self.cx:g}, {(self.height - 1) / 2 + self.cy:g})",
             )
         if len(self.distortion) not in (0, 4, 5) or not all(map(math.isfinite, self.distortion)):
             raise InputError(
@@ -94,10 +104,40 @@ class Camera:
         for name in ("tilt_deg", "lean_deg"):
             if not abs(getattr(self, name)) <= MAX_TILT_DEG:
                 raise InputError(
-                    f"the camera's {name} is beyond {MAX_TILT_DEG:g} degrees", value=getattr(self, name)
+                    f"the camera's {name} is beyond {MAX_TILT_DEG:g} degrees",
+                    value=getattr(self, name),
+                    hint="count it from straight down, where a gimbal's pitch is -90",
                 )
         if not abs(self.twist_deg) <= 360:
             raise InputError("the camera's twist_deg is beyond 360 degrees", value=self.twist_deg)
+
+    def require_pixels(self) -> None:
+        """Raise InputError if a length is probably none in pixels, or counted from elsewhere."""
+        longer = max(self.width, self.height)
+        focal = min(self.fx, self.fy)
+        if focal < WIDEST_FOCAL_SHARE * longer:
+            share = focal <= 2
+            raise InputError(
+                "the focal length is probably a share of the frame's longer side"
+                if share
+                else "the focal length is probably in millimetres",
+                value=f"{focal:g} of a frame of {self.width}x{self.height} pixels",
+                hint=f"give pixels: {focal * longer:g}"
+                if share
+                else f"give pixels: {focal:g} times {longer} over the sensor's longer side in millimetres",
+            )
+        for name, at, length in (("cx", self.cx, self.width), ("cy", self.cy, self.height)):
+            if at >= LEAST_PRINCIPAL_SHARE * length:
+                continue
+            middle = (length - 1) / 2
+            share = 0.3 <= at <= 0.7
+            raise InputError(
+                f"{name} is probably a share of the frame"
+                if share
+                else f"{name} is probably an offset from the frame's middle",
+                value=f"{at:g} of {length} pixels",
+                hint=f"count it from the first pixel: {at * length - 0.5 if share else middle + at:g}",
+            )
 
     @property
     def matrix(self) -> NDArray[np.float64]:
@@ -118,7 +158,7 @@ class Camera:
 
         Raises:
             InputError: the file cannot be read, is no TOML, lacks a key or has one too many, or a value is
-                of the wrong kind or out of range.
+                of the wrong kind, out of range, or probably in another unit.
         """
         try:
             table = tomllib.loads(path.read_text(encoding="utf-8")).get("camera")
@@ -128,11 +168,19 @@ class Camera:
             raise InputError("the camera is no TOML", value=f"{path} ({error})", hint=_FORM) from error
         if not isinstance(table, dict):
             raise InputError("no camera in the file", value=path, hint=_FORM)
-        return cls._of_table(table, path)
+        camera = cls.of_table(table, path)
+        try:
+            camera.require_pixels()
+        except InputError as error:
+            raise InputError(
+                f"the camera {path}: {error.fault}", value=error.value, hint=error.hint
+            ) from None
+        return camera
 
     @classmethod
-    def _of_table(cls, table: dict[str, Any], path: Path) -> Self:
-        unknown = sorted(table.keys() - _KEYS)
+    def of_table(cls, table: dict[str, Any], path: Path) -> Self:
+        """A camera of the keys of `read`; its errors, too, are those of `read`, and name the file."""
+        unknown = sorted(table.keys() - KEYS)
         if unknown:
             raise InputError(f"the camera {path} has an unknown key", value=", ".join(unknown), hint=_FORM)
         needed = {"focal"} if "focal" in table else {"fx", "fy", "cx", "cy"}

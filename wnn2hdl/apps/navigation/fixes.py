@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from wnn2hdl.apps.navigation.counter import frame_times
 from wnn2hdl.apps.navigation.distance import geodesic_m, great_circle_m
 from wnn2hdl.apps.navigation.grid import MapGrid
 from wnn2hdl.apps.navigation.matching import Acceptance, Match, choose_threshold, peak_weights
 from wnn2hdl.apps.navigation.navigator import Located
-from wnn2hdl.apps.navigation.poses import Pose, frame_numbers
+from wnn2hdl.apps.navigation.poses import Pose
 from wnn2hdl.apps.navigation.results import FAR_M, FrameFix
 from wnn2hdl.apps.navigation.track import Fix, follow
 
@@ -99,7 +100,7 @@ def tracked(
         for at in located
     ]
     area = float(grid.valid.sum()) * grid.gsd_m**2 if half_width_m is None else (2 * half_width_m) ** 2
-    times = frame_numbers([pose.frame for pose in poses])
+    times = frame_times([pose.frame for pose in poses])
     points = follow(offered, times, area_m2=area, right_m=FAR_M)
     track = []
     for pose, at, point in zip(poses, located, points, strict=True):

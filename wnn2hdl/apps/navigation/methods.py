@@ -1,6 +1,6 @@
 """The ways of seeing that are compared: how a frame is laid on the ground, and what of it is matched."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -64,13 +64,20 @@ class Method:
     gsd_m: float | None = None
 
 
-def compared_methods(weightless: WeightlessEdges) -> tuple[Method, ...]:
-    """The five rows, with weightless edges that were learned or chosen before."""
-    return (
+WEIGHTLESS = "perspective-weightless"
+"""Key of the project's own method."""
+
+METHODS = ("perspective-canny", "rotation-canny", WEIGHTLESS, "perspective-sobel", "grey")
+"""Keys of the methods, in the order of the tables."""
+
+
+def compared_methods(weightless: WeightlessEdges, keys: Collection[str] = METHODS) -> tuple[Method, ...]:
+    """The rows of these keys, with weightless edges that were learned or chosen before."""
+    rows = (
         Method("perspective-canny", "perspective + Canny", canny_edges),
         Method("rotation-canny", "rotation + Canny", canny_edges, perspective=False),
         Method(
-            "perspective-weightless",
+            WEIGHTLESS,
             "perspective + weightless",
             weightless.extract,
             ChannelIndex,
@@ -79,6 +86,7 @@ def compared_methods(weightless: WeightlessEdges) -> tuple[Method, ...]:
         Method("perspective-sobel", "perspective + Sobel", sobel_edges),
         Method("grey", "perspective + grey levels", grey_levels),
     )
+    return tuple(row for row in rows if row.key in keys)
 
 
 def canny_edges(

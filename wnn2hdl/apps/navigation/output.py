@@ -62,6 +62,10 @@ _PUBLISHED_NOTE = """\
 The published rows were measured on a flight that is not at hand, searched within ±95 m of the truth: none of
 their errors could exceed 134 m, and a blind guess would have been 73 m off on average."""
 
+_UNCALIBRATED = """\
+Nothing was calibrated, so nothing is known of a confidence's worth: a frame by itself always has its best
+position given as a fix, right or wrong."""
+
 
 def write_results(folder: Path, result: FlightResult) -> tuple[Path, ...]:
     """Write ``flight.md``, ``flight.json``, ``table.csv``, ``frames.csv`` and a GeoJSON a search.
@@ -99,6 +103,8 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
     return {
         "version": TABLE_VERSION,
         "map": result.map_name,
+        "map_note": result.map_note,
+        "map_share": result.map_share,
         "ground_sample_distance_m": result.ground_sample_distance_m,
         "camera": {"focal_px": result.focal_px, "tilts_deg": list(result.tilts_deg)},
         "calibrated_on": list(result.calibrated_on),
@@ -109,6 +115,7 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
                 "half_width_m": search.half_width_m,
                 "furthest_m": search.furthest_m,
                 "blind_mean_m": search.blind_mean_m,
+                "beaten": search.beaten,
                 "methods": [
                     {"name": method.name}
                     | {figure: getattr(method, figure) for figure in FIGURES}
@@ -193,16 +200,33 @@ def flight_markdown(result: FlightResult) -> str:
         "# Positions from edges",
         f"Map `{result.map_name}` at {result.ground_sample_distance_m:g} m a pixel; camera {fitted}: focal "
         f"length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
+        _left_out(result),
         _STATISTICS,
         f"They differ from geodesic distances by at most {difference:.2f} m."
         if difference is not None
         else "",
-        *(section for search in result.searches for section in _search_sections(search)),
+        *(
+            section
+            for search in result.searches
+            for section in _search_sections(search, bool(result.calibrated_on))
+        ),
     ]
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
-def _search_sections(search: SearchResult) -> list[str]:
+def _left_out(result: FlightResult) -> str:
+    """What of the map is not searched, and what was assumed about it."""
+    note = f"{result.map_note[:1].upper()}{result.map_note[1:]}." if result.map_note else ""
+    share = (
+        f"{100 * (1 - result.map_share):.1f} % of its north-up grid shows no map (masked, without data, "
+        "plain black or white at its edge, or outside a turned picture) and is left out."
+        if result.map_share < 1
+        else ""
+    )
+    return " ".join(filter(None, [note, share]))
+
+
+def _search_sections(search: SearchResult, calibrated: bool) -> list[str]:
     if search.half_width_m is None:
         title, limits = "## Searched over the whole map", ""
     else:
@@ -230,6 +254,7 @@ def _search_sections(search: SearchResult) -> list[str]:
         title,
         limits,
         _table(heads, [*rows, *published]),
+        search.beaten,
         _PUBLISHED_NOTE,
         "What the confidence is worth:",
         _table(
@@ -237,6 +262,7 @@ def _search_sections(search: SearchResult) -> list[str]:
             confident,
         ),
         _without_fix(search),
+        "" if calibrated else _UNCALIBRATED,
     ]
 
 

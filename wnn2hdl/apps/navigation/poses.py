@@ -1,26 +1,13 @@
 """Where the UAV was and how it was turned at each frame, as its log says."""
 
-import csv
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from wnn2hdl.apps.navigation.counter import in_order
+from wnn2hdl.apps.navigation.pose_table import POSITION, number, read_rows
 from wnn2hdl.errors import InputError
-
-COLUMNS = (
-    "frame",
-    "latitude_deg",
-    "longitude_deg",
-    "height_above_ground_m",
-    "yaw_deg",
-    "pitch_deg",
-    "roll_deg",
-)
-"""The columns of a file of poses; others are left out. Where a position is not known, its two are empty."""
-
-_POSITION = ("latitude_deg", "longitude_deg")
 
 _RANGES = {
     "latitude_deg": (-90.0, 90.0),
@@ -64,32 +51,16 @@ class Pose:
 
 
 def read_poses(path: Path) -> tuple[Pose, ...]:
-    """Read a CSV with the columns `COLUMNS`, in any order, one line a frame; those of the position may lack.
+    """Read a CSV with the columns `pose_table.COLUMNS`, one line a frame; those of the position may lack.
 
     Returns:
-        The poses in the order of flight: by `frame_numbers`, or the file's order where names do not tell.
+        The poses in the order of flight, by `counter.in_order`.
 
     Raises:
-        InputError: the file cannot be read, has no lines or lacks a column; a value is no number or out of
-            range; a frame occurs twice.
+        InputError: as of `pose_table.read_rows` and `counter.in_order`; the file has no lines; a value is no
+            number or out of range; a frame occurs twice.
     """
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.DictReader(stream)
-            there = {*(reader.fieldnames or ())}
-            needed = [name for name in COLUMNS if name not in _POSITION or there & {*_POSITION}]
-            missing = [name for name in needed if name not in there]
-            if missing:
-                raise InputError(
-                    f"the poses {path} lack a column",
-                    value=", ".join(missing),
-                    hint=f"the first line names {','.join(needed)}",
-                )
-            poses = tuple(_pose(row, f"line {reader.line_num} of {path}") for row in reader)
-    except OSError as error:
-        raise InputError("cannot read the poses", value=f"{path} ({error.strerror})") from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError("the poses are no CSV", value=f"{path} ({error})") from error
+    poses = [_pose(row, where) for where, row in read_rows(path)]
     if not poses:
         raise InputError("no poses", value=path, hint="give one line a frame")
     seen: set[str] = set()
@@ -99,22 +70,7 @@ def read_poses(path: Path) -> tuple[Pose, ...]:
                 f"a frame occurs twice in {path}", value=pose.frame, hint="keep one of its lines"
             )
         seen.add(pose.frame)
-    numbers = frame_numbers([pose.frame for pose in poses])
-    if numbers is None:
-        return poses
-    return tuple(pose for _, pose in sorted(zip(numbers, poses, strict=True), key=lambda pair: pair[0]))
-
-
-def frame_numbers(names: Sequence[str]) -> list[int] | None:
-    """The numbers at the end of frames' names, as cameras and video tools count them: ``IMG_0447.jpg``.
-
-    Returns:
-        a number for each name; None unless each has one of its own and the same text before it.
-    """
-    found = [re.fullmatch(r"(.*?)(\d+)(\.[^.]*)?", name) for name in names]
-    parts = [(match[1], int(match[2])) for match in found if match is not None]
-    told = len(parts) == len(names) == len({*parts}) and len({text for text, _ in parts}) == 1
-    return [number for _, number in parts] if told else None
+    return tuple(poses[index] for index in in_order([pose.frame for pose in poses]))
 
 
 def require_located(poses: Sequence[Pose], why: str, hint: str) -> None:
@@ -146,18 +102,35 @@ def frame_files(poses: Sequence[Pose], folder: Path) -> dict[Pose, Path]:
 def _pose(row: dict[str, str], where: str) -> Pose:
     if not row["frame"]:
         raise InputError("a frame without a name", value=where)
-    numbers = []
-    unlocated = not any(row.get(name) for name in _POSITION)
+    unlocated = not any(row.get(name) for name in POSITION)
+    numbers = {
+        name: math.nan if unlocated and name in POSITION else number(row[name], name, where)
+        for name in _RANGES
+    }
     for name, (low, high) in _RANGES.items():
-        if unlocated and name in _POSITION:
-            numbers.append(math.nan)
-            continue
-        text = row[name]
-        try:
-            number = float(text)
-        except (ValueError, TypeError):
-            raise InputError(f"{where}: {name} is no number", value=repr(text)) from None
-        if not (math.isfinite(number) and low <= number <= high):
-            raise InputError(f"{where}: {name} is not within {low:g} to {high:g}", value=text)
-        numbers.append(number)
-    return Pose(row["frame"], *numbers)
+        if not unlocated or name not in POSITION:
+            inside = math.isfinite(numbers[name]) and low <= numbers[name] <= high
+            if not inside:
+                raise InputError(
+                    f"{where}: {name} is not within {low:g} to {high:g}",
+                    value=row[name],
+                    hint=_meant(name, numbers),
+                )
+    if numbers["latitude_deg"] == numbers["longitude_deg"] == 0:
+        raise InputError(
+            f"{where}: latitude and longitude are both 0, as loggers write where they have no position",
+            hint="leave the two cells empty where the position is not known",
+        )
+    return Pose(row["frame"], *numbers.values())
+
+
+def _meant(name: str, numbers: dict[str, float]) -> str:
+    """What a number out of range probably is."""
+    latitude, longitude = (numbers[axis] for axis in POSITION)
+    if name == "latitude_deg" and abs(latitude) <= 180 and abs(longitude) <= 90:
+        return "latitude and longitude are probably swapped"
+    if name == "longitude_deg" and 180 < longitude <= 360:
+        return f"longitudes in the west are negative: {longitude - 360:g}"
+    if name == "height_above_ground_m":
+        return "give metres above the ground, not above sea level or the place of the start"
+    return ""

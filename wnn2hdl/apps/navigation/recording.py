@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.conventions import require_over_map
 from wnn2hdl.apps.navigation.poses import Pose
-from wnn2hdl.apps.navigation.world import WorldMap
+from wnn2hdl.apps.navigation.world import AS_STATED, WorldMap
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import picture_size, read_rgb
+from wnn2hdl.raster import Reading
 from wnn2hdl.samples.flight import Flight, make_flight
 
 SAMPLE_MAP = (1000, 1000)
@@ -41,22 +43,32 @@ class Recording:
     read: Callable[[Pose], NDArray[np.uint8]]
 
     @classmethod
-    def of_files(cls, map_file: Path, files: Mapping[Pose, Path], camera: Camera | float) -> Self:
+    def of_files(
+        cls,
+        map_file: Path,
+        files: Mapping[Pose, Path],
+        camera: Camera | float,
+        reading: Reading = AS_STATED,
+    ) -> Self:
         """A recording whose frames are read when they are wanted.
 
         Args:
-            map_file: a GeoTIFF.
+            map_file: a georeferenced picture.
             files: the file of each frame, at least one, in the order of the flight.
             camera: the camera, or its focal length in pixels of the first frame.
+            reading: how the map is read.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
-            InputError: the map or a frame is missing or cannot be used, or has not the camera's shape.
+            InputError: the map or a frame is missing or cannot be used, or has not the camera's shape; no
+                position is on the map; the camera's numbers are probably no pixels.
         """
-        world = WorldMap.read(map_file)
+        world = WorldMap.read(map_file, reading)
+        require_over_map([*files], world)
         sizes = {file: picture_size(file) for file in files.values()}
         height, width = next(iter(sizes.values()))
         known = camera if isinstance(camera, Camera) else Camera.of_focal(camera, width, height)
+        known.require_pixels()
         for file, (rows, columns) in sizes.items():
             known.require_shape(columns, rows, file.name)
         scaled = known.resized(width, height)
@@ -72,7 +84,7 @@ class Recording:
         flight = make_flight(
             seed, SAMPLE_MAP, frames=SAMPLE_FRAMES, frame_size=SAMPLE_FRAME_SIZE, spacing_m=SAMPLE_SPACING_M
         )
-        world = WorldMap.of_gdal(flight.map_image, flight.transform, flight.epsg)
+        world = WorldMap.of_array(flight.map_image, flight.transform, f"EPSG:{flight.epsg}")
         seen = flight.camera
         camera = Camera.of_focal(seen.focal_px, seen.width, seen.height, seen.tilt_deg)
         numbers = {pose.frame: number for number, pose in enumerate(flight.poses)}

@@ -67,11 +67,13 @@ class MethodResult:
         name: as the tables show it, "perspective + Canny".
         fixes: one a frame, in the order of the flight.
         tracked: whether a filter over the track made them of the method's own.
+        weightless: whether the method is the project's own, the weightless edges.
     """
 
     name: str
     fixes: tuple[FrameFix, ...]
     tracked: bool = False
+    weightless: bool = False
 
     @property
     def errors_m(self) -> tuple[float, ...]:
@@ -159,6 +161,23 @@ class SearchResult:
         return "map" if self.half_width_m is None else f"window_{self.half_width_m:g}m"
 
     @property
+    def beaten(self) -> str:
+        """A sentence on what is nearer than the weightless edges; empty if they were not used, or nothing is.
+
+        Only methods that judge each frame by itself are compared; a track's positions are another thing.
+        """
+        alone = [method for method in self.methods if not method.tracked and method.mean_m is not None]
+        own = next((method for method in alone if method.weightless), None)
+        if own is None or own.mean_m is None:
+            return ""
+        nearer = [method for method in alone if method.mean_m is not None and method.mean_m < own.mean_m]
+        if not nearer:
+            return ""
+        told = ", ".join(f"{method.name} ({method.mean_m:.1f} m)" for method in nearer)
+        verb = "is" if len(nearer) == 1 else "are"
+        return f"On this flight {told} {verb} nearer on average than {own.name} ({own.mean_m:.1f} m)."
+
+    @property
     def furthest_m(self) -> float | None:
         """The largest error a window around the truth allows: its half diagonal."""
         return None if self.half_width_m is None else math.sqrt(2) * self.half_width_m
@@ -186,6 +205,8 @@ class FlightResult:
         tilts_deg: the camera's forward tilt as given, or as fitted for each stretch of the flight, degrees.
         calibrated_on: frames on which unknowns of the camera were fitted; empty if it was given.
         searches: the same methods, searched in one or two ways.
+        map_note: what had to be assumed about the map's bands and pages; empty if nothing.
+        map_share: share of the grid, which is north up, that the map shows, 0 to 1.
     """
 
     map_name: str
@@ -194,6 +215,8 @@ class FlightResult:
     tilts_deg: tuple[float, ...]
     calibrated_on: tuple[str, ...]
     searches: tuple[SearchResult, ...]
+    map_note: str = ""
+    map_share: float = 1.0
 
     @property
     def largest_geodesic_difference_m(self) -> float | None:

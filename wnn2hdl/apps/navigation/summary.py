@@ -5,11 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from wnn2hdl.apps.navigation.fixes import UNCALIBRATED
 from wnn2hdl.apps.navigation.flight import FlightRun
 from wnn2hdl.apps.navigation.output import write_results
 from wnn2hdl.apps.navigation.plots import plot_errors, plot_tracks
 from wnn2hdl.apps.navigation.results import FIGURES, MethodResult, SearchResult
-from wnn2hdl.files import write_json
 
 _KINDS = (
     "errors.*",
@@ -30,10 +30,12 @@ def summary(run: FlightRun) -> dict[str, Any]:
     return {
         "map": run.result.map_name,
         "ground_sample_distance_m": run.result.ground_sample_distance_m,
+        "map_note": run.result.map_note,
+        "map_share": run.result.map_share,
         "frames": len(run.result.searches[0].methods[0].fixes),
         "methods": first["methods"],
         "searches": searches,
-        "calibration": run.calibration.report() if run.calibration else None,
+        "calibration": run.learned.calibration.report() if run.learned else None,
         "largest_geodesic_difference_m": run.result.largest_geodesic_difference_m,
     }
 
@@ -57,9 +59,8 @@ def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
         files += plot_tracks(
             raw, run.grid.image, run.grid.to_pixel, run.grid.gsd_m, folder / f"tracks_{search.key}"
         )
-    if run.calibration:
-        learned = run.calibration.report() | {"weightless": run.weightless.to_json()}
-        write_json(folder / "calibration.json", learned)
+    if run.learned:
+        run.learned.write(folder / "calibration.json")
         files.append(folder / "calibration.json")
     for pattern in _KINDS:
         for file in {*folder.glob(pattern)} - {*files}:
@@ -72,12 +73,13 @@ def _search(run: FlightRun, search: SearchResult) -> dict[str, Any]:
         "half_width_m": search.half_width_m,
         "furthest_m": search.furthest_m,
         "blind_mean_m": search.blind_mean_m,
+        "beaten": search.beaten,
         "methods": {key: _figures(run, search, key, row) for key, row in run.rows(search).items()},
     }
 
 
 def _figures(run: FlightRun, search: SearchResult, key: str, row: MethodResult) -> dict[str, Any]:
-    acceptance = run.acceptances.get((search.kind, key))
+    acceptance = run.learned.acceptances.get((search.kind, key)) if run.learned else UNCALIBRATED
     figures = {name: getattr(row, name) for name in FIGURES}
     threshold = acceptance.threshold if acceptance and math.isfinite(acceptance.threshold) else None
     return figures | {"confidence_threshold": threshold}

@@ -97,7 +97,7 @@ def follow(
 
     Args:
         frames: what each frame's search offers, in the order of flight; nothing where there is no fix.
-        times: when each frame was taken, not falling, in any unit, as `poses.frame_numbers`;
+        times: when each frame was taken, not falling, in any unit, as `counter.frame_times`;
             one unit apart if not given.
         acceleration_m: standard deviation of the acceleration, metres a squared unit of time. The default
             is that of two real flights whose unit is the number in a frame's name (9 and 18, measured).

@@ -21,7 +21,7 @@ are combined by adding their sums, as `wnn2hdl.apps.navigation.channels.ChannelI
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import cv2
 import numpy as np
@@ -31,7 +31,7 @@ from wnn2hdl.apps.navigation.binarise import binary_images
 from wnn2hdl.apps.navigation.channels import ChannelIndex, Channels
 from wnn2hdl.apps.navigation.geometry import Patch
 from wnn2hdl.apps.navigation.matching import Window
-from wnn2hdl.errors import InputError
+from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.ir import WINDOW_BITS, WINDOW_CODES, EdgeFilter, bits_to_codes, codes_to_bits, window_codes
 
 GSD_M = 2.0
@@ -110,8 +110,23 @@ class WeightlessEdges:
         return np.asarray(edges & inside), np.asarray(inside)
 
     def to_json(self) -> dict[str, Any]:
-        """A JSON object of all three attributes, for reports."""
+        """A JSON object of all three attributes."""
         return {"gsd_m": self.gsd_m, "side": self.side, "east": self.east.to_json()}
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Self:
+        """The inverse of `to_json`.
+
+        Raises:
+            ModelFileError: it is anything else, or of another ground sample distance than `GSD_M`.
+        """
+        east = EdgeFilter.from_json(data["east"])
+        if data["gsd_m"] != GSD_M or data["side"] != _odd(THRESHOLD_M / GSD_M):
+            raise ModelFileError(
+                "the weightless edges are meant for another grid",
+                value=f"{data['gsd_m']} m, {data['side']} pixels",
+            )
+        return cls(GSD_M, data["side"], east)
 
 
 def by_rule(gsd_m: float = GSD_M) -> WeightlessEdges:

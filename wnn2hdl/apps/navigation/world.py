@@ -1,9 +1,10 @@
 """The map: a georeferenced picture, laid out as the grid that matching happens on."""
 
-import warnings
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -13,12 +14,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.apps.navigation.grid import MapGrid, local_crs, transformer
 from wnn2hdl.errors import InputError, extra_needed
+from wnn2hdl.images import PlainPicture, Source, open_picture
 from wnn2hdl.ir.window import SIDE
+from wnn2hdl.raster import Reading
 
 if TYPE_CHECKING:
     from affine import Affine
     from pyproj import Transformer
-    from rasterio.crs import CRS
+
+AS_STATED = Reading()
+"""Bands and values as the file states them."""
 
 _WARP_TOLERANCE_PX = 0.01
 """How far GDAL may miss by interpolating coordinates instead of computing each."""
@@ -27,94 +32,79 @@ _VOID_SHARE = 0.001
 """A plain black or white region at the map's edge is taken for no picture if it is this part of the map."""
 
 _MOST_PIXELS = 1 << 30
-"""Of a grid: its picture takes 3 GB then."""
+"""Of a map or a grid: its picture takes 3 GB then."""
 
 
 @dataclass(frozen=True)
 class WorldMap:
-    """A georeferenced picture, from a GeoTIFF or in memory.
+    """A georeferenced picture, from a file or in memory.
 
     Attributes:
-        source: the file, whose pixels are read when a grid is made of them, or uint8 ``[rows, columns, 3]``.
+        source: the picture, read when a grid is made of it.
         shape: rows and columns.
         transform: affine map from (column, row) of pixel corners to the coordinate system; it may be rotated.
-        crs: the coordinate system.
+        crs: the coordinate system, as anything PROJ takes: WKT, ``"EPSG:4326"``.
     """
 
-    source: Path | NDArray[np.uint8]
+    source: Source
     shape: tuple[int, int]
     transform: "Affine"
-    crs: "CRS"
+    crs: str
 
     @classmethod
-    def read(cls, path: Path) -> Self:
-        """Open a GeoTIFF of 8-bit red, green and blue, or of grey.
+    def read(cls, path: Path, reading: Reading = AS_STATED) -> Self:
+        """Open a georeferenced picture, by the same rules as every other: `wnn2hdl.images.open_picture`.
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
-            InputError: the file cannot be read, has no georeference, or other samples than 8 bits.
+            InputError: the file cannot be read, has no georeference, or does not say what its samples are.
         """
         rasterio = _rasterio()
-        try:
-            # What rasterio would warn of, a missing georeference, is refused.
-            warnings_off = warnings.catch_warnings(
-                action="ignore", category=rasterio.errors.NotGeoreferencedWarning
+        source = open_picture(path, reading)
+        place = source.georeference
+        if place.crs is None or place.transform is None:
+            raise InputError(
+                "the map has no georeference",
+                value=path,
+                hint="give a GeoTIFF with a coordinate system and a transform",
             )
-            with warnings_off, rasterio.open(path) as dataset:
-                if dataset.crs is None or dataset.transform.is_identity:
-                    raise InputError(
-                        "the map has no georeference",
-                        value=path,
-                        hint="give a GeoTIFF with a coordinate system and a transform",
-                    )
-                if dataset.colorinterp[0].name == "palette":
-                    raise InputError(
-                        "the map holds indices of a colour table",
-                        value=path,
-                        hint="make it red, green and blue first (gdal_translate -expand rgb)",
-                    )
-                if dataset.dtypes[0] != "uint8":
-                    raise InputError(
-                        "the map's samples are not 8 bits",
-                        value=f"{path} ({dataset.dtypes[0]})",
-                        hint="scale them to bytes first (gdal_translate -ot Byte -scale)",
-                    )
-                return cls(path, dataset.shape, dataset.transform, dataset.crs)
-        except rasterio.errors.RasterioError as error:
-            raise _unreadable(path, error) from error
+        shape = source.height, source.width
+        if shape[0] * shape[1] > _MOST_PIXELS:
+            raise InputError(
+                "the map is too large",
+                value=f"{path} ({shape[1]}x{shape[0]})",
+                hint="cut the country that was flown over out of it",
+            )
+        return cls(source, shape, rasterio.Affine(*place.transform), place.crs)
 
     @classmethod
-    def of_array(cls, image: NDArray[np.uint8], transform: "Affine", crs: Any) -> Self:
+    def of_array(cls, image: NDArray[np.uint8], transform: Iterable[float], crs: str) -> Self:
         """A map in memory.
 
         Args:
             image: uint8 ``[rows, columns, 3]``.
-            transform: affine map from (column, row) of pixel corners, as rasterio's.
-            crs: the coordinate system, as anything rasterio takes: ``"EPSG:4326"``.
+            transform: coefficients a … f of an affine map from (column, row) of pixel corners, as rasterio's.
+            crs: the coordinate system.
         """
-        _rasterio()
-        from rasterio.crs import CRS
+        rasterio = _rasterio()
+        image_shape = image.shape[0], image.shape[1]
+        return cls(PlainPicture(image), image_shape, rasterio.Affine(*islice(transform, 6)), crs)
 
-        return cls(image, (image.shape[0], image.shape[1]), transform, CRS.from_user_input(crs))
-
-    @classmethod
-    def of_gdal(cls, image: NDArray[np.uint8], transform: Sequence[float], epsg: int) -> Self:
-        """As `of_array`, of plain numbers: the affine map's six coefficients a … f, and an EPSG code."""
-        _rasterio()
-        from affine import Affine
-
-        return cls.of_array(image, Affine(*transform), f"EPSG:{epsg}")
+    @property
+    def note(self) -> str:
+        """What had to be assumed about the file's bands and pages; empty if nothing."""
+        return self.source.note
 
     @cached_property
     def _geographic(self) -> "Transformer":
         from pyproj.exceptions import ProjError
 
         try:
-            return transformer(self.crs.to_wkt())
+            return transformer(self.crs)
         except ProjError as error:
             raise InputError(
                 "the map's coordinate system tells no latitudes and longitudes",
-                value=self.crs.to_string(),
+                value=self.crs,
                 hint="give a map in a geographic or projected coordinate system, as UTM",
             ) from error
 
@@ -155,6 +145,18 @@ class WorldMap:
                 hint="give it a transform that can be inverted",
             )
         return float(np.sqrt(area))
+
+    def digest(self) -> str:
+        """SHA-256 of the pixels, which of them are shown, and where they lie: 64 hexadecimal digits.
+
+        Raises:
+            InputError: the map cannot be read.
+        """
+        picture, shown = self._pixels()
+        found = hashlib.sha256(repr((self.shape, tuple(self.transform), self.crs)).encode())
+        found.update(np.ascontiguousarray(picture).data)
+        found.update(np.packbits(shown).data)
+        return found.hexdigest()
 
     def resampled(self, gsd_m: float | None = None) -> MapGrid:
         """Lay the map on a north-up metric grid.
@@ -239,30 +241,18 @@ class WorldMap:
         if not np.isfinite(positions).all():
             raise InputError(
                 "the map is not on the earth",
-                value=f"{self.crs.to_string()}, {tuple(self.transform)[:6]}",
+                value=f"{self.crs}, {tuple(self.transform)[:6]}",
                 hint="correct its coordinate system or its transform",
             )
 
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """The picture, uint8 ``[rows, columns, 3]``, and which of its pixels it shows."""
-        if isinstance(self.source, Path):
-            rasterio = _rasterio()
-            try:
-                with rasterio.open(self.source) as dataset:
-                    bands = [1, 2, 3] if dataset.count >= 3 else [1, 1, 1]
-                    picture = np.ascontiguousarray(np.moveaxis(dataset.read(bands), 0, -1))
-                    shown = dataset.dataset_mask() > 0
-            except rasterio.errors.RasterioError as error:
-                raise _unreadable(self.source, error.__cause__ or error) from error
-        else:
-            picture, shown = self.source, np.ones(self.shape, dtype=np.bool_)
+        picture, valid = self.source.read(0, 0, *self.shape)
+        picture = np.ascontiguousarray(picture)
+        shown = np.ones(self.shape, dtype=np.bool_) if valid is None else valid
         for plain in (0, 255):
-            shown &= ~_void(picture, plain)
+            shown = shown & ~_void(picture, plain)
         return picture, shown
-
-
-def _unreadable(path: Path, error: BaseException) -> InputError:
-    return InputError("cannot read the map", value=f"{path} ({error})")
 
 
 def _applied(
@@ -284,5 +274,4 @@ def _rasterio() -> Any:
     with extra_needed("geo", "georeferenced maps need rasterio and pyproj"):
         import pyproj  # noqa: F401  # fails here rather than later
         import rasterio
-        import rasterio.errors
     return rasterio

@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.classify import Method, WindowResult, classify_window
 from wnn2hdl.apps.deforestation.local import run_locally
-from wnn2hdl.apps.deforestation.source import PlainPicture
 from wnn2hdl.apps.deforestation.task import Task
 from wnn2hdl.apps.deforestation.windows import Window
 from wnn2hdl.evaluation.classifiers import PictureClassifier
-from wnn2hdl.images import write_png
+from wnn2hdl.images import PlainPicture, write_png
 from wnn2hdl.raster import Reading
 
 WINDOWS = [

@@ -1,6 +1,6 @@
 """A small rendered flight, located once for all tests of it."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 import cv2
@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
+from wnn2hdl.apps.navigation.learned import Learned
+from wnn2hdl.apps.navigation.methods import METHODS
 from wnn2hdl.apps.navigation.poses import Pose
 from wnn2hdl.apps.navigation.recording import Recording, poses_of, split
 from wnn2hdl.apps.navigation.results import SearchKind
@@ -29,8 +31,17 @@ class Flying:
     steps: list[tuple[str, int, int]] = field(default_factory=list)
     threads: list[int] = field(default_factory=list)
 
-    def __call__(self, searches: Mapping[SearchKind, float | None], aside_deg: float = 0) -> FlightRun:
-        """Locate them; the logged positions of those that are scored are so many degrees aside."""
+    def __call__(
+        self,
+        searches: Mapping[SearchKind, float | None],
+        aside_deg: float = 0,
+        known: Learned | None = None,
+        keys: Collection[str] = METHODS,
+    ) -> FlightRun:
+        """Locate them by some methods; logged positions of those that are scored are so many degrees aside.
+
+        What is known already is not calibrated.
+        """
         flight = make_flight(
             4,
             (600, 600),
@@ -52,12 +63,19 @@ class Flying:
 
         recording = Recording(
             "rendered",
-            WorldMap.of_gdal(flight.map_image, flight.transform, flight.epsg),
+            WorldMap.of_array(flight.map_image, flight.transform, f"EPSG:{flight.epsg}"),
             Camera.of_focal(flight.camera.focal_px, 260, 150),
             scored,
             read,
         )
-        return run_flight(recording, calibrating, searches, lambda *step: self.steps.append(step), jobs=2)
+        return run_flight(
+            recording,
+            known or calibrating,
+            searches,
+            lambda *step: self.steps.append(step),
+            keys=keys,
+            jobs=2,
+        )
 
 
 @pytest.fixture(scope="session")

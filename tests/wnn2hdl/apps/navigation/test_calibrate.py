@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from wnn2hdl.apps.navigation.calibrate import Calibration, calibrate
+from wnn2hdl.apps.navigation.calibrate import Calibration, Fit, calibrate
 from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.geometry import camera_to_ground
 from wnn2hdl.apps.navigation.grid import MapGrid
@@ -17,6 +17,7 @@ from wnn2hdl.errors import InputError
 GUESS = Camera.of_focal(150, 200, 150)
 HEIGHT_M = 100.0
 LATITUDE, LONGITUDE = 24.0, 120.0
+FIT = Fit(3, 2.5, 2.0, 0.7)
 
 
 def country(side: int = 250, seed: int = 0) -> MapGrid:
@@ -62,7 +63,7 @@ def fitted(
     grid: MapGrid, cameras: list[Camera], poses: list[Pose], logged: list[Pose] | None = None
 ) -> Calibration:
     frames = [photographed(grid, camera, pose) for camera, pose in zip(cameras, poses, strict=True)]
-    return calibrate(grid, grid.image[..., 0], frames, logged or poses, GUESS, lambda done, total: None)
+    return calibrate(grid, grid.image[..., 0], frames, logged or poses, GUESS, lambda *_: None)
 
 
 def test_finds_a_strapped_camera_again() -> None:
@@ -126,14 +127,14 @@ def test_too_little_to_calibrate_on_is_refused() -> None:
             [np.zeros((150, 200), np.uint8)] * 4,
             away,
             GUESS,
-            lambda done, total: None,
+            lambda *_: None,
         )
 
 
 def test_a_frame_has_the_camera_of_its_stretch_or_of_either_beside_it() -> None:
     early, late = replace(GUESS, tilt_deg=9), replace(GUESS, tilt_deg=1)
     frames = ("IMG_008.jpg", "IMG_012.jpg", "IMG_100.jpg")
-    found = Calibration(frames, (early, early, late), 0.0, (), ())
+    found = Calibration(frames, (early, early, late), 0.0, FIT, FIT)
     assert found.cameras_at("IMG_001.jpg") == (early,)
     assert found.cameras_at("IMG_9.jpg") == (early,)
     assert found.cameras_at("IMG_012.jpg") == (early,)
@@ -146,6 +147,6 @@ def test_a_frame_has_the_camera_of_its_stretch_or_of_either_beside_it() -> None:
 
 def test_a_frame_of_the_calibration_has_its_own_camera_whatever_its_name() -> None:
     early, late = replace(GUESS, tilt_deg=9), replace(GUESS, tilt_deg=1)
-    found = Calibration(("river.jpg", "town.jpg"), (early, late), 0.0, (), ())
+    found = Calibration(("river.jpg", "town.jpg"), (early, late), 0.0, FIT, FIT)
     assert found.cameras_at("river.jpg") == (early,)
     assert found.cameras_at("town.jpg") == (late,)

@@ -1,11 +1,14 @@
 """Cameras: read from TOML, refused with one line, scaled with their frames."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.camera import KEYS, Camera
 from wnn2hdl.errors import InputError
 
 
@@ -60,6 +63,14 @@ FOCAL = "[camera]\nfocal = 750\nwidth = 1000\nheight = 562\n"
         (FOCAL + "cx = 2000", "outside the frame"),
         (FOCAL + "distortion = 1", "no list of numbers: 1"),
         (FOCAL + "distortion = [1]", "not the coefficients of a lens"),
+        ("[camera]\nfocal = 8.8\nwidth = 1000\nheight = 562", "focal length is probably in millimetres: 8.8"),
+        ("[camera]\nfocal = 0.76\nwidth = 1000\nheight = 562", "a share of the frame's longer side"),
+        ("[camera]\nfocal = 0.76\nwidth = 1000\nheight = 562", "give pixels: 760"),
+        (FOCAL + "cx = 3.8\ncy = 6.1", "cx is probably an offset from the frame's middle: 3.8"),
+        (FOCAL + "cx = 3.8\ncy = 6.1", "count it from the first pixel: 503.3"),
+        (FOCAL + "cx = -3.8\ncy = 6.1", "an offset from the middle would be (495.7, 286.6)"),
+        (FOCAL + "cx = 510\ncy = 0.5", "cy is probably a share of the frame: 0.5"),
+        (FOCAL + "tilt_deg = -90", "where a gimbal's pitch is -90"),
         ("[camera]\nfocal = 0\nwidth = 1000\nheight = 562", "not positive: fx = 0"),
         ("[camera]\nfocal = 750\nwidth = 1000.5\nheight = 562", "width is no whole number: 1000.5"),
         ("[camera]\nfocal = 750\nwidth = 0\nheight = 562", "frame is empty: width = 0"),
@@ -88,3 +99,26 @@ def test_scaling_keeps_what_a_place_in_the_frame_looks_at() -> None:
 def test_another_shape_is_refused() -> None:
     with pytest.raises(InputError, match="another shape"):
         Camera.of_focal(750, 1000, 562).scaled(1000, 750)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.dictionaries(
+        st.sampled_from([*KEYS, "f", "k1"]),
+        st.one_of(
+            st.floats().map(repr),
+            st.integers(-(10**20), 10**20).map(str),
+            st.sampled_from(["true", "'down'", "[]", "[0.1, 0, 0, 0]", "[nan]", "{}", "750.0", "1000"]),
+        ),
+    ),
+    st.text(max_size=20),
+)
+def test_any_table_is_a_camera_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, values: dict[str, str], rest: str
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "fuzz.toml"
+    lines = [f"{key} = {value}" for key, value in values.items()]
+    path.write_bytes("\n".join(["[camera]", *lines, rest]).encode("utf-8", "replace"))
+    with suppress(InputError):
+        camera = Camera.read(path)
+        assert np.isfinite(camera.matrix).all()

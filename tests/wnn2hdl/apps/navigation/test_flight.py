@@ -1,21 +1,23 @@
 """A whole run over a small rendered flight, and over the real one."""
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import cv2
 import pytest
 
-from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
-from wnn2hdl.apps.navigation.poses import frame_files, read_poses
+from wnn2hdl.apps.navigation.flight import FlightRun, calibrated, run_flight
+from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.errors import InputError
 
 
 def test_the_unknown_tilt_is_found_and_frames_are_located(run: FlightRun) -> None:
-    assert run.calibration is not None
-    assert run.calibration.cameras[0].tilt_deg == pytest.approx(7, abs=1)
+    assert run.learned is not None
+    assert run.learned.calibration.cameras[0].tilt_deg == pytest.approx(7, abs=1)
     for search in run.result.searches:
         for key, row in run.rows(search).items():
             if key not in ("rotation-canny", "rotation-canny-track"):
@@ -32,7 +34,9 @@ def test_calibration_frames_are_not_scored(run: FlightRun) -> None:
 
 def test_where_scored_frames_were_makes_no_difference_on_the_whole_map(run: FlightRun, flying: Any) -> None:
     elsewhere = flying({"map": None}, aside_deg=0.5)
-    assert elsewhere.calibration == run.calibration
+    assert elsewhere.learned is not None
+    assert run.learned is not None
+    assert elsewhere.learned.calibration == run.learned.calibration
     for lost, known in zip(elsewhere.result.searches[0].methods, run.result.searches[1].methods, strict=True):
         for one, other in zip(lost.fixes, known.fixes, strict=True):
             assert one.error_m is not None
@@ -57,8 +61,25 @@ def test_a_flight_beside_the_map_is_refused(flying: Any) -> None:
         flying({"window": 40.0}, aside_deg=1)
 
 
+def test_what_was_learned_before_gives_the_same_fixes(run: FlightRun, flying: Any) -> None:
+    again = flying({"window": 40.0}, known=run.learned, keys=["grey", "perspective-weightless"])
+    assert again.learned == run.learned
+    assert again.result.calibrated_on == run.result.calibrated_on
+    before, now = run.rows(run.result.searches[0]), again.rows(again.result.searches[0])
+    assert list(now) == [
+        "perspective-weightless",
+        "grey",
+        "perspective-weightless-track",
+        "grey-track",
+    ]
+    for key, row in now.items():
+        for one, other in zip(row.fixes, before[key].fixes, strict=True):
+            assert replace(one, seconds=0) == replace(other, seconds=0)
+
+
 def test_progress_is_told(run: FlightRun, flying: Any) -> None:
-    assert {step for step, _, _ in flying.steps} == {"map", "calibration", "thresholds", "frames"}
+    steps = ["map", "conventions", "calibration", "thresholds", "frames"]
+    assert list(dict.fromkeys(step for step, _, _ in flying.steps)) == steps
     assert flying.steps[-1] == ("frames", 3, 3)
 
 
@@ -87,3 +108,31 @@ def test_weightless_edges_locate_the_real_flight(realdata: Path) -> None:
     assert row.mean_m is not None
     assert row.mean_m <= 18
     assert row.false_positive_percent == 0
+
+
+def place(pose: Pose) -> tuple[str, float, float, float]:
+    """All of a pose but its angles."""
+    return pose.frame, pose.latitude_deg, pose.longitude_deg, pose.height_m
+
+
+@pytest.mark.slow
+@pytest.mark.realdata
+@pytest.mark.parametrize(
+    ("log", "named"),
+    [
+        (lambda pose: replace(pose, height_m=pose.height_m + 210), "is above sea level"),
+        (lambda pose: replace(pose, height_m=pose.height_m / 0.3048), "is in feet"),
+        (lambda pose: replace(pose, yaw_deg=-pose.yaw_deg), "counter-clockwise from north"),
+        (lambda pose: replace(pose, yaw_deg=pose.yaw_deg - 180), "twist_deg = 180"),
+        (lambda pose: Pose(*place(pose), math.radians(pose.yaw_deg)), "in radians"),
+    ],
+    ids=["sea level", "feet", "counter-clockwise", "backwards", "radians"],
+)
+def test_the_real_flight_in_another_convention_is_refused_by_name(
+    realdata: Path, log: Callable[[Pose], Pose], named: str
+) -> None:
+    folder = realdata / "flight_fengyuan"
+    calibrating, _ = split([log(pose) for pose in read_poses(folder / "poses.csv")], 10)
+    files = frame_files(calibrating, folder / "frames")
+    with pytest.raises(InputError, match=named):
+        calibrated(Recording.of_files(folder / "map.tif", files, 750.0), calibrating, lambda *_: None)

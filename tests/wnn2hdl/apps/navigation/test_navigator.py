@@ -23,7 +23,7 @@ def flight() -> Flight:
 
 @pytest.fixture(scope="module")
 def grids(flight: Flight) -> dict[float | None, MapGrid]:
-    world = WorldMap.of_gdal(flight.map_image, flight.transform, flight.epsg)
+    world = WorldMap.of_array(flight.map_image, flight.transform, f"EPSG:{flight.epsg}")
     return {None: world.resampled(), GSD_M: world.resampled(GSD_M)}
 
 

@@ -79,6 +79,21 @@ def test_markdown_names_the_methods_that_give_no_fix() -> None:
     assert "No fix" not in flight_markdown(RESULT)
 
 
+def test_markdown_says_what_is_not_calibrated_left_out_or_assumed() -> None:
+    page = flight_markdown(replace(RESULT, calibrated_on=(), map_note="three bands", map_share=0.913))
+    assert page.count("Nothing was calibrated") == 2
+    assert "Three bands. 8.7 % of its north-up grid shows no map" in page
+    plain = flight_markdown(RESULT)
+    assert "Nothing was calibrated" not in plain
+    assert "shows no map" not in plain
+
+
+def test_markdown_says_what_is_nearer_than_the_weightless_edges() -> None:
+    own, nearer = replace(EDGES, weightless=True), MethodResult("grey levels", (fix(1, 1.0),))
+    page = flight_markdown(replace(RESULT, searches=(SearchResult("map", None, (own, nearer)),)))
+    assert "On this flight grey levels (1.0 m) is nearer" in page
+
+
 def test_a_method_without_positions_shows_no_figures() -> None:
     nothing = MethodResult("Sobel", (fix(1, None),))
     page = flight_markdown(FlightResult("m", 0.5, 1, (0.0,), (), (SearchResult("map", None, (nothing,)),)))

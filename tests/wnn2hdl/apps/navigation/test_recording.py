@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from wnn2hdl.apps.navigation.camera import Camera
-from wnn2hdl.apps.navigation.poses import Pose, frame_files
+from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.errors import InputError
 from wnn2hdl.samples.flight import make_flight, write_flight
@@ -36,7 +36,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def poses_of(folder: Path) -> list[Pose]:
-    return [Pose(path.name, -9.86, -61.27, 50, 0) for path in sorted((folder / "frames").iterdir())]
+    return [*read_poses(folder / "poses.csv")]
 
 
 def test_frames_are_read_when_they_are_wanted(folder: Path) -> None:
@@ -67,7 +67,7 @@ def test_a_frame_of_another_shape_is_named_at_once(folder: Path, tmp_path: Path)
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_missing_files_are_refused(folder: Path, tmp_path: Path) -> None:
     poses = poses_of(folder)
-    with pytest.raises(InputError, match="cannot read the map"):
+    with pytest.raises(InputError, match=r"cannot read the picture: .*map\.tif"):
         Recording.of_files(tmp_path / "map.tif", frame_files(poses, folder / "frames"), 120.0)
     with pytest.raises(InputError, match="cannot read the picture"):
         Recording.of_files(folder / "map.tif", {poses[0]: tmp_path / "none.jpg"}, 120.0)

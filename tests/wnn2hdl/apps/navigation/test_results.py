@@ -82,3 +82,18 @@ def test_the_largest_difference_to_the_geodesic_is_taken_over_everything() -> No
     assert flight.largest_geodesic_difference_m is not None
     assert math.isclose(flight.largest_geodesic_difference_m, 4)
     assert FlightResult("map.tif", 0.5, 750, (10.0,), (), ()).largest_geodesic_difference_m is None
+
+
+def test_what_is_nearer_than_the_weightless_edges_is_said() -> None:
+    own = MethodResult("weightless", (fix(10.0),), weightless=True)
+    better, worse, tracked = (
+        MethodResult("grey", (fix(3.0),)),
+        MethodResult("Canny", (fix(30.0),)),
+        MethodResult("grey, track", (fix(1.0),), tracked=True),
+    )
+    found = SearchResult("map", None, (worse, own, better, tracked)).beaten
+    assert found == "On this flight grey (3.0 m) is nearer on average than weightless (10.0 m)."
+    both = SearchResult("map", None, (MethodResult("Sobel", (fix(9.0),)), own, better)).beaten
+    assert "Sobel (9.0 m), grey (3.0 m) are nearer" in both
+    for methods in ((own, worse, tracked), (worse, better), (MethodResult("w", (), weightless=True), better)):
+        assert SearchResult("map", None, methods).beaten == ""

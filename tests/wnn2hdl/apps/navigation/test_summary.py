@@ -42,7 +42,7 @@ def test_files_of_an_earlier_run_do_not_stay_beside_new_ones(run: FlightRun, tmp
     write_run(run, tmp_path)
     (tmp_path / "tracks_home.png").touch()
     window = replace(run.result, searches=run.result.searches[:1])
-    files = write_run(replace(run, result=window, calibration=None), tmp_path)
+    files = write_run(replace(run, result=window, learned=None), tmp_path)
     assert {*tmp_path.iterdir()} == {*files, tmp_path / "tracks_home.png"}
     assert "tracks_map.png" not in {file.name for file in files}
 
@@ -59,4 +59,5 @@ def test_without_any_truth_there_are_no_errors_to_plot(flying: Any, tmp_path: Pa
 def test_what_was_learned_is_told(run: FlightRun, tmp_path: Path) -> None:
     write_run(run, tmp_path)
     learned = json.loads((tmp_path / "calibration.json").read_text())
-    assert learned["weightless"] == run.weightless.to_json()
+    assert run.learned is not None
+    assert learned["weightless"] == run.learned.weightless.to_json()

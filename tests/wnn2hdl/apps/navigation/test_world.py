@@ -13,6 +13,7 @@ from pyproj import Geod
 
 from wnn2hdl.apps.navigation.world import WorldMap
 from wnn2hdl.errors import InputError
+from wnn2hdl.raster import Reading
 
 LATITUDE, LONGITUDE = 24.26, 120.72
 DEGREES = Affine(4.93e-6, 4.0e-8, LONGITUDE, 2.0e-8, -4.51e-6, LATITUDE)
@@ -29,7 +30,7 @@ def dots(shape: tuple[int, int] = (300, 400)) -> NDArray[np.uint8]:
     return np.repeat(mark[..., None], 3, axis=-1)
 
 
-def written(path: Path, image: NDArray[np.uint8], **profile: Any) -> Path:
+def written(path: Path, image: NDArray[Any], **profile: Any) -> Path:
     bands = np.moveaxis(image, -1, 0)
     size = {"count": len(bands), "height": bands.shape[1], "width": bands.shape[2]}
     with rasterio.open(path, "w", driver="GTiff", dtype=image.dtype, **size, **profile) as dataset:
@@ -103,30 +104,58 @@ def test_no_data_is_no_map(tmp_path: Path) -> None:
 
 
 def test_bad_maps_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot read the map"):
+    with pytest.raises(InputError, match="cannot read the picture"):
         WorldMap.read(tmp_path / "none.tif")
     (tmp_path / "text.tif").write_text("no map")
-    with pytest.raises(InputError, match="cannot read the map"):
+    with pytest.raises(InputError, match="not a picture"):
         WorldMap.read(tmp_path / "text.tif")
     Image.fromarray(dots()).save(tmp_path / "plain.tif")
     with pytest.raises(InputError, match="no georeference"):
         WorldMap.read(tmp_path / "plain.tif")
     deep = written(tmp_path / "deep.tif", dots().astype(np.uint16), crs="EPSG:32651", transform=METRES)
-    with pytest.raises(InputError, match="not 8 bits"):
+    with pytest.raises(InputError, match=r"samples are uint16.*--scale"):
         WorldMap.read(deep)
 
 
-def test_indices_of_a_colour_table_are_refused(tmp_path: Path) -> None:
-    place = {"crs": "EPSG:32651", "transform": METRES, "photometric": "palette"}
-    path = written(tmp_path / "map.tif", dots()[..., :1], **place)
-    with pytest.raises(InputError, match=r"indices of a colour table: .*gdal_translate -expand rgb"):
+PLACE: dict[str, Any] = {"crs": "EPSG:32651", "transform": METRES}
+
+
+def coloured() -> NDArray[np.uint8]:
+    """Another picture in each channel."""
+    return np.stack([dots()[..., 0], dots()[::-1, :, 0], dots()[:, ::-1, 0]], axis=-1)
+
+
+def test_bands_are_taken_as_the_file_names_them(tmp_path: Path) -> None:
+    path = written(tmp_path / "bgr.tif", coloured()[..., ::-1], photometric="minisblack", **PLACE)
+    with rasterio.open(path, "r+") as dataset:
+        dataset.colorinterp = [rasterio.enums.ColorInterp[name] for name in ("blue", "green", "red")]
+    straight = WorldMap.read(written(tmp_path / "rgb.tif", coloured(), photometric="rgb", **PLACE))
+    assert (WorldMap.read(path).resampled().image == straight.resampled().image).all()
+
+
+def test_bands_and_values_that_the_file_does_not_tell_are_named_by_the_user(tmp_path: Path) -> None:
+    four = np.concatenate([coloured()[..., ::-1], dots()[..., :1]], axis=-1)
+    path = written(tmp_path / "four.tif", four.astype(np.uint16) * 10, photometric="minisblack", **PLACE)
+    with pytest.raises(InputError, match="which of its 4 bands"):
         WorldMap.read(path)
+    told = WorldMap.read(path, Reading(bands=(3, 2, 1), scale=(0, 2550)))
+    straight = WorldMap.read(written(tmp_path / "rgb.tif", coloured(), photometric="rgb", **PLACE))
+    assert (told.resampled().image == straight.resampled().image).all()
+
+
+def test_indices_of_a_colour_table_become_its_colours(tmp_path: Path) -> None:
+    path = written(tmp_path / "map.tif", dots()[..., :1], photometric="palette", **PLACE)
+    with rasterio.open(path, "r+") as dataset:
+        dataset.write_colormap(1, {level: (255 - level, level, 7, 255) for level in range(256)})
+    image = WorldMap.read(path).resampled().image
+    assert (image[20:-20, 20:-20, 2] == 7).all()
+    assert (image[20:-20, 20:-20, :2].sum(axis=-1) == 255).mean() > 0.9
 
 
 def test_a_damaged_map_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path / "map.tif", dots(), crs="EPSG:32651", transform=METRES)
     path.write_bytes(path.read_bytes()[:100_000])
-    with pytest.raises(InputError, match=r"cannot read the map: .*map\.tif"):
+    with pytest.raises(InputError, match=r"damaged or truncated: .*map\.tif"):
         WorldMap.read(path).resampled()
 
 

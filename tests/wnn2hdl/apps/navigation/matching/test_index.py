@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.matching import MapIndex, Score, Window
-from wnn2hdl.apps.navigation.matching.brute import brute_scores
+from wnn2hdl.apps.navigation.matching.scores import Sums, Values, evaluate
+from wnn2hdl.apps.navigation.matching.spectra import cut
 from wnn2hdl.errors import InputError
 
 SCORES: tuple[Score, ...] = ("correlation", "ncc", "match_count")
@@ -49,6 +50,24 @@ def cases(draw: st.DrawFn) -> tuple[Bits, Bits, Bits, Bits, Window, float]:
         window,
         draw(st.sampled_from((0.0, 0.5, 1.0))),
     )
+
+
+def brute_scores(
+    image: Bits, valid: Bits, template: Bits, mask: Bits, score: Score, window: Window
+) -> tuple[Values, Values]:
+    """Scores and numbers of common pixels of all positions of a window, pixel by pixel."""
+    size = window.shape[0] + mask.shape[0] - 1, window.shape[1] + mask.shape[1] - 1
+    under = [cut(layer, window.top, window.left, size) for layer in (valid, image & valid)]
+    inside, f = (np.lib.stride_tricks.sliding_window_view(layer, mask.shape) for layer in under)
+    common = inside & mask
+    w = common & template
+    f = f & mask
+    count, *sums = (
+        layer.sum(axis=(2, 3)).astype(np.float64) for layer in (common, f, w, f & w, ~(f ^ w) & common)
+    )
+    if score == "match_count":
+        return sums[3] / np.maximum(count, 1), count
+    return evaluate(score, Sums(count, sums[0], sums[0], sums[1], sums[1], sums[2])), count
 
 
 @settings(max_examples=150, deadline=None)
