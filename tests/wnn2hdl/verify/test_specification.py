@@ -30,15 +30,20 @@ def test_a_window_port_holds_pixel_0_in_its_low_bits_and_red_in_each_pixels_high
 
 def test_each_kind_of_care_set_says_which_codes_matter() -> None:
     some = np.array([True, False, True, True])
-    assert flags_of(Everything(2), "pixel").tolist() == [True] * 4
-    assert flags_of(Codes(some), "pixel").tolist() == some.tolist()
-    assert flags_of(Implied(2, ((0, 1),)), "pixel").tolist() == [True, True, False, True]
+    assert flags_of(Everything(2), 2, "pixel").tolist() == [True] * 4
+    assert flags_of(Codes(some), 2, "pixel").tolist() == some.tolist()
+    assert flags_of(Implied(2, ((0, 1),)), 2, "pixel").tolist() == [True, True, False, True]
 
 
 def test_an_empty_care_set_is_refused_since_any_circuit_would_pass() -> None:
     with pytest.raises(InputError, match=r"care set of the pixel is empty.*nothing to prove"):
-        flags_of(Codes(np.zeros(4, dtype=np.bool_)), "pixel")
+        flags_of(Codes(np.zeros(4, dtype=np.bool_)), 2, "pixel")
 
 
 def test_values_are_shown_in_hexadecimal() -> None:
     assert show({"window": 255, "reference_bits": 16}) == "window 0xff, reference_bits 0x10"
+
+
+def test_a_care_set_of_other_codes_is_refused() -> None:
+    with pytest.raises(InputError, match=r"one of other codes: 30 bits, not 2"):
+        flags_of(Everything(30), 2, "pixel")
