@@ -511,5 +511,5 @@ if __name__ == "__main__":
             refused += bool(said)
             harmless += right and not said
             verdict = said[0] if said else f"passed: {trick.harmless or 'NOT REFUSED'}"
-            print(f"{'' if right else '!!! '}{where}: {trick.name}: {verdict}", flush=True)
+            print(f"{'' if right else '!!! '}{where}: {trick.name[:60]}: {verdict}", flush=True)
         print(f"{folder}: {refused} refused, {harmless} harmless, {wrong} wrong")

@@ -1,6 +1,9 @@
 """Hand-written circuits of random small models: what the compiler would emit, without the compiler."""
 
 import sys
+import tempfile
+from dataclasses import replace
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -8,6 +11,7 @@ import pytest
 
 from wnn2hdl.ir import BitSelect, EdgeFilter, Neighbourhood, Tap, WisardModel, codes_to_bits
 from wnn2hdl.ir.care import Codes
+from wnn2hdl.tools import find_yosys
 from wnn2hdl.verify.block import Block
 from wnn2hdl.verify.equivalence import Circuit
 from wnn2hdl.verify.neighbourhood import Neighbours
@@ -101,6 +105,20 @@ def circuit(of: Block | Neighbours, part: str, *, free: bool = True) -> Circuit:
 def as_circuit(part: str, text: str) -> Circuit:
     """A text that holds the module of a part."""
     return Circuit((text,), {"edge": "edge_filter", "match": "bit_match"}.get(part, part))
+
+
+def mapped(circuit: Circuit) -> Circuit:
+    """The netlist of 7-series cells that Yosys maps a circuit to."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "source.v").write_text(circuit.sources[0], encoding="utf-8")
+        find_yosys().run(
+            f"read_verilog source.v\nsynth_xilinx -family xc7 -flatten -noiopad -top {circuit.top}\n"
+            "write_verilog -noattr netlist.v\n",
+            timeout=60,
+            cwd=folder,
+        )
+        return replace(circuit, sources=((folder / "netlist.v").read_text(encoding="utf-8"),))
 
 
 def class_width(of: Block | Neighbours) -> int:

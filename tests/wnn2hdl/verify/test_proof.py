@@ -1,7 +1,5 @@
 """The proof: passes what equals the model where it matters, and nothing else."""
 
-import tempfile
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 
 from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.ir.pixels import bits_to_pixels
-from wnn2hdl.tools import find_yosys
 from wnn2hdl.verify.equivalence import Circuit
 from wnn2hdl.verify.proof import Counterexample, prove, prove_netlists
 from wnn2hdl.verify.specification import Specification, value_bits
@@ -169,26 +166,12 @@ def test_instantiated_luts_are_proved_by_their_contents(circuits: ModuleType) ->
         assert status(specification, "edge", circuit) == outcome
 
 
-def mapped(verilog: str, top: str) -> str:
-    """The netlist of 7-series cells that Yosys maps a module to."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "source.v").write_text(verilog, encoding="utf-8")
-        find_yosys().run(
-            f"read_verilog source.v\nsynth_xilinx -family xc7 -flatten -noiopad -top {top}\n"
-            "write_verilog -noattr netlist.v\n",
-            timeout=60,
-            cwd=folder,
-        )
-        return (folder / "netlist.v").read_text(encoding="utf-8")
-
-
 def test_the_mapped_netlist_is_proved_equal_and_one_flipped_init_bit_found(circuits: ModuleType) -> None:
     block = circuits.random_block(6)
     specification = circuits.exact(block)
     source = circuits.circuit(block, "edge")
-    text = mapped(source.sources[0], source.top)
-    netlist = circuits.as_circuit("edge", text)
+    netlist = circuits.mapped(source)
+    (text,) = netlist.sources
     assert prove_netlists(specification, {"edge": (source, netlist)})["edge"].status == "proved"
     start = text.index("'h", text.index("INIT(")) + 2
     wrong = f"{text[:start]}{int(text[start], 16) ^ 1:x}{text[start + 1 :]}"
