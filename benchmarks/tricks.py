@@ -329,14 +329,17 @@ TEXT = (
     Trick("a hierarchical assignment", verilog(_LAST, "    assign pixel_0.R7 = 1'b0;\nendmodule\n")),
     Trick("a force", verilog(_LAST, "    initial force class_bits = 1'b0;\nendmodule\n")),
     Trick("an initial block", verilog(_LAST, "    reg r; initial r = 0;\nendmodule\n")),
-    Trick("a delay of a wire", verilog(r"    wire R7 =", "    wire #1000 R7 =")),
+    Trick("a delay of a wire", verilog(r"    wire (?P<net>[RGB]\d) =", r"    wire #1000 \g<net> =")),
     Trick("a delay of an assignment", verilog(r"    assign ", "    assign #1000 ")),
     Trick(
         "an incomplete sensitivity list",
-        verilog(r"wire R7 = (?P<bit>rgb\[23\]);", r"reg R7; always @(rgb[0]) R7 = \g<bit>;"),
+        verilog(
+            r"wire (?P<net>[RGB]\d) = (?P<bit>rgb\[\d+\]);",
+            r"reg \g<net>; always @(rgb[0]) \g<net> = \g<bit>;",
+        ),
     ),
-    Trick("a select out of range", verilog(r"rgb\[23\]", "rgb[32]")),
-    Trick("a negative select", verilog(r"rgb\[23\]", "rgb[-1]")),
+    Trick("a select out of range", verilog(r"rgb\[\d+\]", "rgb[32]")),
+    Trick("a negative select", verilog(r"rgb\[\d+\]", "rgb[-1]")),
     Trick(
         "a second cell model at the end",
         verilog(
@@ -347,7 +350,7 @@ TEXT = (
     ),
     Trick("a second module of the same name", verilog(r"\Z", "\nmodule px_pixel; endmodule\n")),
     Trick("an unconnected copy of a cell", verilog(_CELL, "    LUT1 copy ();\n    LUT")),
-    Trick("LUT6_2 in place of LUT6", verilog(r"LUT6 #", "LUT6_2 #")),
+    Trick("LUT6_2 in place of LUT6", verilog(r"LUT\d #", "LUT6_2 #")),
     Trick("another attribute", verilog("DONT_TOUCH", "black_box")),
     Trick("full_case", verilog(_BODY, ") /* synthesis full_case */;")),
     Trick("`include", verilog(r"\A", '`include "x.v"\n')),
@@ -356,16 +359,18 @@ TEXT = (
     Trick("`timescale", verilog(r"\A", "`timescale 1s/1s\n")),
     Trick("`celldefine", verilog(r"\A", "`celldefine\n")),
     Trick("`line", verilog(r"\A", '`line 1 "x.v" 0\n')),
-    Trick("a wired net", verilog(r"    wire R7 =", "    wand R7 =")),
+    Trick("a wired net", verilog(r"    wire (?P<net>[RGB]\d) =", r"    wand \g<net> =")),
     Trick("a weak net", verilog(r"    assign ", "    assign (weak0, weak1) ")),
-    Trick("an undefined bit", verilog(r"= rgb\[23\]", "= 1'bz")),
+    Trick("an undefined bit", verilog(r"= rgb\[\d+\]", "= 1'bz")),
     Trick("a bind", verilog(r"\Z", "\nbind px_pixel x y ();\n")),
     Trick("a generate block", verilog(_BODY, ");\n    generate if (1) wire g; endgenerate")),
     Trick("a specify block", verilog(_BODY, ");\n    specify (rgb => class_bits) = 9; endspecify")),
-    Trick("an escaped name", verilog(r"wire R7", r"wire \\R7 ")),
-    Trick("a comment that hides a line", verilog(r"^(?P<line>    wire R7[^\n]*)", r"    /* \g<line> */")),
-    Trick("lines that end by CR LF", verilog("\n(?=    wire R7)", "\r\n")),
-    Trick("a line that ends by CR", verilog("\n(?=    wire R7)", "\r")),
+    Trick("an escaped name", verilog(r"wire (?P<net>[RGB]\d)", r"wire \\\g<net> ")),
+    Trick(
+        "a comment that hides a line", verilog(r"^(?P<line>    wire [RGB]\d[^\n]*)", r"    /* \g<line> */")
+    ),
+    Trick("lines that end by CR LF", verilog("\n(?=    wire [RGB])", "\r\n")),
+    Trick("a line that ends by CR", verilog("\n(?=    wire [RGB])", "\r")),
     Trick("a form feed for the end of a line", verilog("\n(?=module)", "\f")),
     Trick("a vertical tab for the end of a line", verilog("\n(?=module)", "\v")),
     Trick("NEL for the end of a line", verilog("\n(?=module)", "\x85")),
@@ -481,7 +486,7 @@ DESIGN = (
         "contents that are too wide", in_network(lambda data: data["cells"][0].update(init="1" + "0" * 99))
     ),
     Trick("another style", design(_set("style", to="equations"))),
-    Trick("a circuit in a circle", design(lambda data: data["circuit"].append(data["circuit"][-1]))),
+    Trick("a circuit that is there twice", design(lambda data: data["circuit"].append(data["circuit"][-1]))),
     Trick("a newer format", design(_set("version", to=99))),
 )
 

@@ -176,16 +176,17 @@ class Design:
         for line in self.header:
             check_comment(line)
         claims = self.specification.claims
+        unknown = self.parts.keys() - claims.keys()
+        if unknown:
+            raise ValueError(f"nothing is known about the circuits {', '.join(sorted(unknown))}")
         for name, part in self.parts.items():
             require_unreserved(self.module(name))
-            if name not in claims:
-                raise ValueError(f"nothing is known about the circuit {name}")
             ports = {port.name: port.width for port in part.inputs}, {x.name: x.width for x in part.outputs}
             if ports != (claims[name].inputs, claims[name].outputs):
                 raise ValueError(f"{name} has the ports {ports}")
             if part.latency:
                 raise ValueError(f"{name} answers {part.latency} cycles late")
-        for name, table in self.circuit.tables():
+        for name, table in self.circuit.tables().items():
             if not isinstance(table.function, LutNetwork):
                 raise ValueError(f"{name} is not mapped to LUTs")
         for name, care in care_sets(self.circuit).items():

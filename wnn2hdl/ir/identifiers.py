@@ -73,6 +73,6 @@ def check_comment(line: object) -> None:
     words that they obey inside a comment.
     """
     if not isinstance(line, str) or not (line.isascii() and line.isprintable()) or line.endswith("\\"):
-        raise ValueError(f"{line!r} is no line of a comment")
+        raise ValueError(f"{line!r:.80} is no line of a comment")
     if not _COMMANDS.isdisjoint(re.findall(r"\w+", line.lower())[:1]):
-        raise ValueError(f"the comment {line!r} is a command to a tool")
+        raise ValueError(f"the comment {line!r:.80} is a command to a tool")
