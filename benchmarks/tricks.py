@@ -452,7 +452,7 @@ DESIGN = (
         for name in ("x;y", "x y", "x\ny", "module", "x__y", "*/", "é", "x" * 5000, "../x", "sobel", 7)
     ),
     *(
-        Trick(f"the comment {line!r}", design(lambda data, line=line: data["header"].__setitem__(0, line)))
+        Trick(f"the comment {line!r}", design(_set("header", 0, to=line)))
         for line in (
             "x\nmodule y; endmodule",
             "x \\",

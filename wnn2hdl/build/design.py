@@ -15,7 +15,8 @@ from wnn2hdl.ir import EdgeFilter, LutNetwork, Style, WisardModel
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
-from wnn2hdl.ir.identifiers import check_comment, require_name, require_unreserved
+from wnn2hdl.ir.identifiers import require_name, require_unreserved
+from wnn2hdl.ir.verilog_text import check_comment
 from wnn2hdl.lower.targets import TARGETS, Target
 from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.specify import care_sets, specify

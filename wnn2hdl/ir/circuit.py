@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import ClassVar
 
 from wnn2hdl.ir.care import CareSet
-from wnn2hdl.ir.identifiers import check_comment, check_identifier
 from wnn2hdl.ir.nodes import Leaf, Table
+from wnn2hdl.ir.verilog_text import check_comment, check_identifier
 from wnn2hdl.ir.wires import Bits, Port, Word, read_word, width_of
 
 

@@ -1,4 +1,4 @@
-"""What may stand in Verilog: names, and lines of comments that no tool takes for a command."""
+"""Names of Verilog modules: what is one, and what no HDL or C++ compiler takes for a word of its own."""
 
 import re
 from importlib.resources import files
@@ -7,13 +7,6 @@ from wnn2hdl.errors import InputError
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
 _LONGEST = 60
-_LONGEST_NET = 200
-_COMMANDS = frozenset(
-    {"altera", "ambit", "cadence", "exemplar", "intel", "lint_off", "lint_on", "pragma", "quartus"}
-    | {"rtl_synthesis", "synopsys", "synthesis", "translate_off", "translate_on", "vcs", "verilator"}
-    | {"vivado", "xilinx"}
-)
-"""Words with which a comment speaks to a tool, as in ``// synthesis translate_off``."""
 
 RESERVED = frozenset(
     word
@@ -54,25 +47,3 @@ def name_from(text: str) -> str:
     if not joined or not joined[0].isalpha():
         joined = f"wnn_{joined}".rstrip("_")[:_LONGEST]
     return joined
-
-
-def check_identifier(name: object) -> None:
-    """Raise ValueError unless a name of a port, a node or a net can stand in any HDL as it is."""
-    if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > _LONGEST_NET:
-        raise ValueError(
-            f"{name!r} is no name: letters, digits and underscores, a letter first"[:_LONGEST_NET]
-        )
-    if name.lower() in RESERVED:
-        raise ValueError(f"the name {name} is a reserved word of an HDL or of C++")
-
-
-def check_comment(line: object) -> None:
-    """Raise ValueError unless a text is one line of a comment, whatever tool reads it, and no command to one.
-
-    Tools differ in which characters end a line, in whether a backslash joins it to the next one, and in the
-    words that they obey inside a comment.
-    """
-    if not isinstance(line, str) or not (line.isascii() and line.isprintable()) or line.endswith("\\"):
-        raise ValueError(f"{line!r:.80} is no line of a comment")
-    if not _COMMANDS.isdisjoint(re.findall(r"\w+", line.lower())[:1]):
-        raise ValueError(f"the comment {line!r:.80} is a command to a tool")

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import ModelFileError
-from wnn2hdl.ir.identifiers import check_identifier
 from wnn2hdl.ir.tables import unpack_contents
+from wnn2hdl.ir.verilog_text import check_identifier
 
 LUT_INPUTS = 6
 """Inputs of the 7-series LUT (Xilinx UG474)."""

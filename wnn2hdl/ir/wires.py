@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir.identifiers import check_identifier
+from wnn2hdl.ir.verilog_text import check_identifier
 
 Bits = NDArray[np.bool_]
 """Values of a port or a word: bool ``[samples, width]``; element 0 of a row is the least significant."""
