@@ -55,8 +55,7 @@ def mutants_caught(design: Design, text: str) -> None:
         assert draw is not None
         inputs = draw()
         if part not in alone:
-            count = len(next(iter(inputs.values())))
-            rows = np.random.default_rng(0).permutation(count)[:WHOLE]
+            rows = np.random.default_rng(0).permutation(len(next(iter(inputs.values()))))[:WHOLE]
             inputs = {port: bits[rows] for port, bits in inputs.items()}
         started = time.perf_counter()
         mutants = make_mutants(verilog, count, 0)
