@@ -40,6 +40,8 @@ def circuit_from_json(data: Any) -> Circuit:
                 {str(port): word_from_json(word) for port, word in item["outputs"].items()},
                 tuple(Care(word_from_json(care["word"]), care_from_json(care)) for care in item["care"]),
             )
+            if circuit.name in known:
+                raise ValueError(f"two circuits are called {circuit.name}")
             known[circuit.name] = circuit
         return circuit
     except (KeyError, TypeError, ValueError, AttributeError, UnboundLocalError, OverflowError) as error:

@@ -8,6 +8,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.ir.verilog_text import check_identifier
+
 Bits = NDArray[np.bool_]
 """Values of a port or a word: bool ``[samples, width]``; element 0 of a row is the least significant."""
 
@@ -22,6 +24,7 @@ class Port:
     width: int
 
     def __post_init__(self) -> None:
+        check_identifier(self.name)
         if self.width < 1:
             raise ValueError(f"port {self.name} has {self.width} bits; the fewest are 1")
 
