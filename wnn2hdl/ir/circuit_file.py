@@ -41,6 +41,8 @@ def circuit_from_json(data: Any) -> Circuit:
                 tuple(Care(word_from_json(care["word"]), care_from_json(care)) for care in item["care"]),
             )
             known[circuit.name] = circuit
+        circuit.definitions()
+        _ = circuit.latency
         return circuit
     except (KeyError, TypeError, ValueError, AttributeError, UnboundLocalError, OverflowError) as error:
         raise ModelFileError("not a circuit", value=error, hint="compile the model again") from error

@@ -23,8 +23,7 @@ def require_name(name: str) -> str:
     Raises:
         InputError: it is no identifier of Verilog and VHDL alike, or too long.
     """
-    plain = _NAME.fullmatch(name) and "__" not in name and not name.endswith("_")
-    if not plain or len(name) > _LONGEST:
+    if not _plain(name):
         raise InputError(
             "not a name that Verilog modules can begin with",
             value=repr(name if len(name) <= _LONGEST else name[:_LONGEST] + "…"),
@@ -39,6 +38,17 @@ def require_unreserved(module: str) -> None:
         raise InputError(
             "a module would be called like a reserved word", value=module, hint="choose another --name"
         )
+
+
+def is_name(name: str) -> bool:
+    """Whether it is a short identifier of Verilog and VHDL alike, and no reserved word."""
+    return _plain(name) and name.lower() not in RESERVED
+
+
+def _plain(name: str) -> bool:
+    joined = _NAME.fullmatch(name) and "__" not in name and not name.endswith("_")
+    return bool(joined) and len(name) <= _LONGEST
+
 
 
 def name_from(text: str) -> str:

@@ -8,6 +8,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.ir.identifiers import is_name
+
 Bits = NDArray[np.bool_]
 """Values of a port or a word: bool ``[samples, width]``; element 0 of a row is the least significant."""
 
@@ -16,7 +18,10 @@ _SLICE = re.compile(r"([A-Za-z]\w*(?:\.\w+)?)\[(\d+):(\d+)\]", re.ASCII)
 
 @dataclass(frozen=True)
 class Port:
-    """A port of a circuit: its name and its width in bits."""
+    """A port of a circuit: its name, an identifier of every HDL, and its width in bits.
+
+    The name of the clock, which no circuit has as a port of its own, is ``clk``.
+    """
 
     name: str
     width: int
@@ -24,6 +29,8 @@ class Port:
     def __post_init__(self) -> None:
         if self.width < 1:
             raise ValueError(f"port {self.name} has {self.width} bits; the fewest are 1")
+        if not is_name(self.name) or self.name == "clk":
+            raise ValueError(f"{self.name!r} cannot name a port")
 
     @property
     def word(self) -> "Word":
