@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """From a circuit to an Amaranth component: each kind of node has its hardware here."""
 
 from collections.abc import Callable, Mapping
@@ -161,7 +162,7 @@ def _match(scope: _Scope, node: Match) -> None:
 
 def _argmax(scope: _Scope, node: ArgMax) -> None:
     words = [scope.read(word) for word in node.words]
-    scope.nets[node.name] = draw_winner(scope.m, words, tie=node.tie, name=node.name, platform=scope.platform)
+    scope.nets[node.name] = draw_winner(scope.m, words, tie=node.tie, name=node.name)
 
 
 def _register(scope: _Scope, node: Register) -> None:
