@@ -57,9 +57,11 @@ def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: 
     """
     inputs, outputs = port_widths(part)
     latency = part.latency
-    applied, checked, ready = "i", "i", ""
+    # What is compared lags behind what is applied; they are one vector where there is no latency.
+    applied, words, checked, apply, ready = "vector", "vector", "i", "", ""
     if latency:
-        applied, checked = f"i < {count} ? i : {count - 1}", f"i < {latency} ? 0 : i - {latency}"
+        applied, words, checked = "applied", "applied, vector", f"i < {latency} ? 0 : i - {latency}"
+        apply = f"            applied = vectors[i < {count} ? i : {count - 1}];\n"
         ready = f"i >= {latency} && "
     total = sum(inputs.values()) + sum(outputs.values())
     fields = _fields(inputs | outputs, total)
@@ -67,7 +69,7 @@ def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: 
     connections = ",\n".join(f"        .{port}({port})" for port in (*clock, *inputs, *outputs))
     wires = "\n".join(
         ["    reg clk = 1'b0;" for _ in clock]
-        + [f"    wire {_range(width)}{port} = applied[{fields[port]}];" for port, width in inputs.items()]
+        + [f"    wire {_range(width)}{port} = {applied}[{fields[port]}];" for port, width in inputs.items()]
         + [f"    wire {_range(width)}{port};" for port, width in outputs.items()]
         + [
             f"    wire {_range(width)}{port}_expected = vector[{fields[port]}];"
@@ -90,7 +92,7 @@ def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: 
 // with Verilator: verilator --binary --top-module {name}_tb {files} && obj_dir/V{name}_tb
 module {name}_tb;
     reg [{total - 1}:0] vectors [0:{count - 1}];
-    reg [{total - 1}:0] applied, vector;
+    reg [{total - 1}:0] {words};
     integer i;
 {wires}
 
@@ -101,11 +103,10 @@ module {name}_tb;
     initial begin
         $readmemh("{vectors_file}", vectors);
         for (i = 0; i < {count + latency}; i = i + 1) begin
-            applied = vectors[{applied}];
-            vector = vectors[{checked}];
+{apply}            vector = vectors[{checked}];
             #1;
             // A vector with unknown bits was not read: the file is missing or too short.
-            if ({ready}(^vector === 1'bx
+            if ({ready}(^{{{words}}} === 1'bx
                 || {differs})) begin
                 $display("FAIL: {name}, vector %0d of {count}", {checked});
 {shown}
