@@ -34,9 +34,11 @@ class Names:
         for cell in module.cells:
             if cell.is_instance:
                 self.instances[cell] = self._plain(cell.name)
-        self._by_bits: dict[BitVector, list[str]] = {}
-        for name, net in module.nets.items():
-            self._by_bits.setdefault(net.bits, []).append(name)
+        self._by_bits: dict[BitVector, str] = {}
+        # A name that Amaranth numbered, as in ``total$7``, only where there is no other.
+        for name in sorted(module.nets, key=lambda name: "$" in name):
+            if not module.nets[name].hidden:
+                self._by_bits.setdefault(module.nets[name].bits, name)
         for port, bits in module.inputs.items():
             self._references |= {bit: (port, position, 1) for position, bit in enumerate(bits)}
         self._name_input_bits()
@@ -72,9 +74,8 @@ class Names:
             self._references[bit] = (plain, 0, 1)
 
     def _name_driven(self, cell: Cell, pin: str, bits: BitVector) -> None:
-        candidates = self._by_bits.get(bits, [])
-        port = next((name for name in candidates if name in self._module.outputs), None)
-        public = next((name for name in candidates if not self._module.nets[name].hidden), None)
+        public = self._by_bits.get(bits)
+        port = next((name for name, word in self._module.outputs.items() if word == bits), None)
         if port is not None:
             name = port
         elif cell.is_instance and not _is_vendor_cell(cell):

@@ -43,6 +43,16 @@ def test_what_a_cell_drives_takes_the_name_of_a_port_then_of_a_net_then_one_of_i
     assert names.driven((31,)) == [("term_5", 0, 1)]
 
 
+def test_a_name_that_amaranth_numbered_is_the_last_choice() -> None:
+    names = Names(module((gate("$4", 30),), {"a$13": visible(30), "sum": visible(30), "b$14": visible(30)}))
+    assert names.driven((30,)) == [("sum", 0, 1)]
+
+
+def test_of_two_ports_the_first_gives_its_name() -> None:
+    both = Module("m", {"rgb": RGB}, {"z": (20,), "y": (20,)}, {"y": visible(20)}, (gate("$4", 20),))
+    assert Names(both).driven((20,)) == [("z", 0, 1)]
+
+
 def test_the_outputs_of_an_instance_are_named_after_its_pins() -> None:
     instance = Cell("pixel_0", "p_pixel", {}, {}, {}, {"class_bits": (30, 31)})
     names = Names(module((instance,)))
