@@ -22,7 +22,12 @@ _VERILATOR_ARGUMENTS = ["-CFLAGS", "-UVL_TIME_CONTEXT"]
 
 
 def run_bench(
-    claim: Claim, module: str, sources: Sequence[Path], inputs: Samples, simulator: SimulatorName, folder: Path
+    claim: Claim,
+    module: str,
+    sources: Sequence[Path],
+    inputs: Samples,
+    simulator: SimulatorName,
+    folder: Path,
 ) -> int:
     """Run every sample through a circuit and compare with the model in NumPy.
 

@@ -16,9 +16,7 @@ KINDS = ("table", "threshold", "sum", "match", "argmax", "register", "instance")
 def random_inputs(circuit: Circuit, count: int) -> dict[str, Bits]:
     """Random values for each input port; samples of few set bits and of many are among them."""
     rng = np.random.default_rng(count)
-    return {
-        port.name: rng.random((count, port.width)) < rng.random((count, 1)) for port in circuit.inputs
-    }
+    return {port.name: rng.random((count, port.width)) < rng.random((count, 1)) for port in circuit.inputs}
 
 
 @st.composite
@@ -99,8 +97,9 @@ def _nodes(draw: st.DrawFn, name: str, kind: str, bits: Sequence[Slice], *, mapp
         case "table":
             inputs = tuple(f"in{i}" for i in range(width))
             outputs = tuple(f"y{i}" for i in range(draw(st.integers(1, 3))))
-            function = draw(networks(inputs, outputs) if mapped else truth_tables(inputs, outputs))
-            return Table(name, word, function)
+            if mapped:
+                return Table(name, word, draw(networks(inputs, outputs)))
+            return Table(name, word, draw(truth_tables(inputs, outputs)))
         case "threshold":
             return Threshold(name, word, draw(st.integers(-1, 1 << width)))
         case "sum":

@@ -102,12 +102,15 @@ class _Scope:
         for part in (part for word in [*words, *circuit.drivers.values()] for part in word):
             read[part.net].update(range(part.low, part.low + part.width))
         return [
-            value[bit] for net, value in self.nets.items() for bit in range(len(value)) if bit not in read[net]
+            value[bit]
+            for net, value in self.nets.items()
+            for bit in range(len(value))
+            if bit not in read[net]
         ]
 
 
 def _read_words(node: Node) -> tuple[Word, ...]:
-    """The words whose bits the hardware of a node reads; a function may not depend on all that it is given."""
+    """The words whose bits the hardware of a node reads; a function may ignore some of its inputs."""
     if isinstance(node, Table) and isinstance(node.function, LutNetwork):
         bits = [Slice(part.net, part.low + i) for part in node.word for i in range(part.width)]
         unread = set(unread_inputs(node.function))

@@ -30,7 +30,8 @@ def test_bit_i_of_a_number_is_element_i() -> None:
 
 
 @pytest.mark.parametrize(
-    "values", [np.zeros((2, 3), dtype=np.bool_), np.zeros((2, 2), dtype=np.int64), np.zeros(2, dtype=np.bool_)]
+    "values",
+    [np.zeros((2, 3), dtype=np.bool_), np.zeros((2, 2), dtype=np.int64), np.zeros(2, dtype=np.bool_)],
 )
 def test_values_that_do_not_fit_are_refused(values: np.ndarray) -> None:
     others = {"reference_bits": np.zeros((2, 10), dtype=np.bool_)}

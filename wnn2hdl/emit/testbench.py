@@ -43,10 +43,11 @@ def vectors(component: Component, inputs: Arrays, expected: Arrays) -> str:
 def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: Sequence[str]) -> str:
     """A self-checking testbench ``NAME_tb`` for the module ``NAME``.
 
-    It applies a vector in each cycle and compares the outputs `Part.latency` cycles later. It reads its vectors from the folder it is started in, prints ``PASS`` and their number, or ``FAIL`` with
-    the inputs, the actual and the expected outputs of the first mismatch (unknown bits are one) and stops. A
-    failing run ends with ``$stop``: a status other than 0 from Verilator's program and from ``vvp -N``; plain
-    ``vvp`` asks what to do. ``$fatal`` would need SystemVerilog.
+    It applies a vector in each cycle and compares the outputs `Part.latency` cycles later. It reads its
+    vectors from the folder it is started in, prints ``PASS`` and their number, or ``FAIL`` with the inputs,
+    the actual and the expected outputs of the first mismatch (unknown bits are one) and stops. A failing run
+    ends with ``$stop``: a status other than 0 from Verilator's program and from ``vvp -N``; plain ``vvp``
+    asks what to do. ``$fatal`` would need SystemVerilog.
 
     Args:
         part: the circuit under test, for its ports and its latency.

@@ -43,7 +43,9 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
         {name: list(inner.signature.members) for name, inner in parts.items()},
     )
     if foreign := modules.keys() - parts.keys():
-        raise NotImplementedError(f"{part.module_name} holds {sorted(foreign)}, for which there is no Verilog")
+        raise NotImplementedError(
+            f"{part.module_name} holds {sorted(foreign)}, for which there is no Verilog"
+        )
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header)
     return "\n".join([comment + LINT, *(_module(inner, modules[name]) for name, inner in parts.items())])
 

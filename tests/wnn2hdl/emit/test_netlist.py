@@ -34,7 +34,10 @@ def test_ports_stand_in_the_order_wanted_and_the_clock_before_them() -> None:
     module = read_modules([text(m, "gate", y=y, b=b, a=a)], {"gate": ["b", "y", "a"]})["gate"]
     assert list(module.inputs) == ["b", "a"]
     assert [len(bits) for bits in module.inputs.values()] == [3, 2]
-    assert list(read_modules([counter()], {"counter": ["step", "count"]})["counter"].inputs) == ["clk", "step"]
+    assert list(read_modules([counter()], {"counter": ["step", "count"]})["counter"].inputs) == [
+        "clk",
+        "step",
+    ]
 
 
 def test_cells_have_their_pins_by_direction_and_their_parameters_as_numbers() -> None:

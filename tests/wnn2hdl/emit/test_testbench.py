@@ -26,9 +26,14 @@ COUNTS = codes_to_bits(6 - np.bitwise_count(BITS ^ REFERENCE), 3)
 def matcher(latency: int = 0) -> Circuit:
     """A matcher of six bits, its count perhaps delayed."""
     bits, reference = Port("bits", 6), Port("reference_bits", 6)
-    match, late = Match("same", bits.word, reference.word), Register("late", (Slice("same", 0, 3),), latency or 1)
+    match, late = (
+        Match("same", bits.word, reference.word),
+        Register("late", (Slice("same", 0, 3),), latency or 1),
+    )
     if latency:
-        return Circuit("match", "M.", (bits, reference), (match, late), {"match_count": (Slice("late", 0, 3),)})
+        return Circuit(
+            "match", "M.", (bits, reference), (match, late), {"match_count": (Slice("late", 0, 3),)}
+        )
     return Circuit("match", "M.", (bits, reference), (match,), {"match_count": (Slice("same", 0, 3),)})
 
 
@@ -58,7 +63,9 @@ def test_a_right_circuit_passes(tmp_path: Path, latency: int) -> None:
     files = bench(tmp_path, latency=latency)
     assert lint_icarus(files, "my_match_tb", timeout=60) == []
     assert lint_verilator(files, "my_match_tb", timeout=60) == []
-    assert run_icarus(files, "my_match_tb", cwd=tmp_path, timeout=60).output == "PASS: my_match, 4096 vectors\n"
+    assert (
+        run_icarus(files, "my_match_tb", cwd=tmp_path, timeout=60).output == "PASS: my_match, 4096 vectors\n"
+    )
 
 
 @needs_simulator
@@ -89,9 +96,8 @@ def test_a_circuit_that_is_a_cycle_late_fails(tmp_path: Path) -> None:
 @needs_simulator
 @pytest.mark.simulator
 def test_an_unknown_output_fails(tmp_path: Path) -> None:
-    nothing = (
-        "module my_match (input [5:0] bits, input [5:0] reference_bits, output [2:0] match_count);\nendmodule\n"
-    )
+    ports = "input [5:0] bits, input [5:0] reference_bits, output [2:0] match_count"
+    nothing = f"module my_match ({ports});\nendmodule\n"
     with pytest.raises(ToolError) as caught:
         run_icarus(bench(tmp_path, design=nothing), "my_match_tb", cwd=tmp_path, timeout=60)
     assert "match_count = z" in caught.value.output
@@ -115,4 +121,7 @@ def test_missing_vectors_fail(tmp_path: Path, latency: int) -> None:
 @pytest.mark.parametrize("latency", [0, 2])
 def test_it_runs_in_verilator_too(tmp_path: Path, latency: int) -> None:
     files = bench(tmp_path, latency=latency)
-    assert "PASS: my_match, 4096 vectors" in run_verilator(files, "my_match_tb", cwd=tmp_path, timeout=300).output
+    assert (
+        "PASS: my_match, 4096 vectors"
+        in run_verilator(files, "my_match_tb", cwd=tmp_path, timeout=300).output
+    )

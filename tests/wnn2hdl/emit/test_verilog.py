@@ -4,6 +4,7 @@
 import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -49,9 +50,7 @@ def pixel(*cells: Lut | Mux, **outputs: str) -> Circuit:
 
 
 def edge() -> Circuit:
-    cells = (
-        Lut("n0", ("bit1", "bit4", "bit5"), sum(1 << a for a in range(8) if a & 2 and a & 5 != 5)),
-    )
+    cells = (Lut("n0", ("bit1", "bit4", "bit5"), sum(1 << a for a in range(8) if a & 2 and a & 5 != 5)),)
     bits = Port("bits", 9)
     table = Table("filter", bits.word, LutNetwork(BIT_NAMES, cells, (("edge_bit", "n0"),)))
     return Circuit("edge", "Edge filter.", (bits,), (table,), {"edge_bit": (Slice("filter"),)})
@@ -92,7 +91,9 @@ def pipeline() -> Circuit:
         Register("answer", (Slice("best"), Slice("other", 2, 3)), 3),
     )
     word = (Slice("answer", 0, 4),)
-    return Circuit("pipeline", "A pipeline.", (A, B), nodes, {"q": word, "again": word, "low": (Slice("answer"),)})
+    return Circuit(
+        "pipeline", "A pipeline.", (A, B), nodes, {"q": word, "again": word, "low": (Slice("answer"),)}
+    )
 
 
 def unread() -> Circuit:
@@ -140,7 +141,9 @@ STYLES: tuple[Style, ...] = ("cells", "equations")
 SOBEL = sobel.Parameters().create()
 
 
-def emitted(circuit: Circuit, style: Style = "cells", *, prefix: str = "my_", header: Sequence[str] = ()) -> str:
+def emitted(
+    circuit: Circuit, style: Style = "cells", *, prefix: str = "my_", header: Sequence[str] = ()
+) -> str:
     return verilog(component(circuit, style=style), prefix=prefix, header=header)
 
 
@@ -355,7 +358,7 @@ def test_the_emitted_text_is_proved_equal_to_the_drawing_of_amaranth() -> None:
     for name, circuit in CIRCUITS.items():
         for style in STYLES:
             if not circuit.latency:
-                parts[f"{name} {style}"] = lambda circuit=circuit, style=style: component(circuit, style=style)
+                parts[f"{name} {style}"] = partial(component, circuit, style=style)
     assert {name: found for name, found in differences(parts).items() if found} == {}
 
 
@@ -363,14 +366,16 @@ def test_the_emitted_text_is_proved_equal_to_the_drawing_of_amaranth() -> None:
 @settings(max_examples=8, deadline=None)
 @given(
     st.lists(
-        circuits(("table", "threshold", "sum", "match", "argmax", "instance")).filter(lambda x: not x.latency),
+        circuits(("table", "threshold", "sum", "match", "argmax", "instance")).filter(
+            lambda x: not x.latency
+        ),
         min_size=3,
         max_size=3,
     )
 )
 def test_random_circuits_are_proved_equal_to_the_drawing_of_amaranth(random: list[Circuit]) -> None:
     parts: dict[str, Callable[[], Part]] = {
-        str(i): lambda circuit=circuit: component(circuit, style="cells") for i, circuit in enumerate(random)
+        str(i): partial(component, circuit, style="cells") for i, circuit in enumerate(random)
     }
     assert {name: found for name, found in differences(parts).items() if found} == {}
 

@@ -68,7 +68,12 @@ def test_care_sets_and_definitions_go_along() -> None:
 
 
 ANYTHING = st.recursive(
-    st.none() | st.booleans() | st.integers(-(2**70), 2**70) | st.floats() | st.text(max_size=5) | st.just("a[0:0]"),
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**70), 2**70)
+    | st.floats()
+    | st.text(max_size=5)
+    | st.just("a[0:0]"),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
     max_leaves=5,
 )
@@ -104,7 +109,14 @@ def test_a_damaged_circuit_is_refused_in_one_way_or_is_whole(data: st.DataObject
 
 
 def definition(name: str, **changes: Any) -> dict[str, Any]:
-    whole = {"name": name, "summary": "", "inputs": {"a": 1}, "nodes": [], "outputs": {"y": ["a[0:0]"]}, "care": []}
+    whole = {
+        "name": name,
+        "summary": "",
+        "inputs": {"a": 1},
+        "nodes": [],
+        "outputs": {"y": ["a[0:0]"]},
+        "care": [],
+    }
     return whole | changes
 
 

@@ -28,7 +28,9 @@ def test_what_is_no_identifier_is_refused(name: str) -> None:
         require_name(name)
 
 
-@pytest.mark.parametrize("name", ["module", "Entity", "SIGNAL", "reference" if "reference" in RESERVED else "class"])
+@pytest.mark.parametrize(
+    "name", ["module", "Entity", "SIGNAL", "reference" if "reference" in RESERVED else "class"]
+)
 def test_reserved_words_are_refused_in_any_case(name: str) -> None:
     assert not is_name(name)
     with pytest.raises(InputError, match=f"reserved word of an HDL or of C.*: {name}; choose another"):

@@ -12,14 +12,14 @@ from wnn2hdl.ir.wires import Slice
 A, B, C = (Slice("a", 0, 3),), (Slice("b", 0, 3),), (Slice("c", 0, 2),)
 CODES = np.arange(8)
 WORDS = codes_to_bits(CODES, 3)
-OTHERS = WORDS[::-1]
 
 
 def value(node: Leaf, *words: np.ndarray) -> list[int]:
     (bits,) = node.evaluate(words).values()
     assert bits.dtype == np.bool_
     assert bits.shape[1] == node.drives[node.name]
-    return bits_to_codes(bits).tolist()
+    codes: list[int] = bits_to_codes(bits).tolist()
+    return codes
 
 
 def test_a_table_looks_its_word_up() -> None:

@@ -21,7 +21,9 @@ def test_words_read_back_as_they_were_written(word: tuple[Slice, ...]) -> None:
     assert word_from_json(word_to_json(word)) == word
 
 
-@pytest.mark.parametrize("text", ["a", "a[0]", "a[0:1]", "a[-1:0]", "[1:0]", "a b[1:0]", "a[1:0] ", "9[1:0]", ""])
+@pytest.mark.parametrize(
+    "text", ["a", "a[0]", "a[0:1]", "a[-1:0]", "[1:0]", "a b[1:0]", "a[1:0] ", "9[1:0]", ""]
+)
 def test_anything_else_is_no_slice(text: str) -> None:
     with pytest.raises(ValueError, match="is not a slice of a net"):
         Slice.parse(text)
@@ -44,7 +46,9 @@ def test_a_port_has_bits() -> None:
         Port("rgb", 0)
 
 
-@pytest.mark.parametrize("name", ["edge", "Signal", "int", "a b", "a-b", "1st", "a__b", "a_", "_a", "clk", "", "é"])
+@pytest.mark.parametrize(
+    "name", ["edge", "Signal", "int", "a b", "a-b", "1st", "a__b", "a_", "_a", "clk", "", "é"]
+)
 def test_a_port_has_a_name_that_every_hdl_can_have(name: str) -> None:
     with pytest.raises(ValueError, match="cannot name a port"):
         Port(name, 1)

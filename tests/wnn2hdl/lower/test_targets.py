@@ -53,9 +53,7 @@ def test_without_a_name_the_first_fitting_target_is_taken() -> None:
 
 
 def test_a_target_of_another_kind_of_model_is_refused() -> None:
-    line = (
-        "the model looks at a pixel's neighbours: target pixel; choose neighbourhood, or another model"
-    )
+    line = "the model looks at a pixel's neighbours: target pixel; choose neighbourhood, or another model"
     with pytest.raises(InputError, match=line):
         target_for(model(Neighbourhood(3, TAPS)), "pixel")
     with pytest.raises(InputError, match="does not look at a pixel's neighbours: target neighbourhood"):

@@ -34,7 +34,10 @@ def test_each_table_has_a_cover_a_network_and_the_name_of_its_method() -> None:
     assert all(isinstance(table.function, LutNetwork) for _, table in done.circuit.tables())
     inputs = {"a": codes_to_bits(np.arange(16), 4)}
     assert np.array_equal(done.circuit.evaluate(inputs)["y"], circuit.evaluate(inputs)["y"])
-    assert done.covers["pair_one"].cover.evaluate(np.arange(16))[:, 0].tolist() == (np.arange(16) % 5 == 0).tolist()
+    assert (
+        done.covers["pair_one"].cover.evaluate(np.arange(16))[:, 0].tolist()
+        == (np.arange(16) % 5 == 0).tolist()
+    )
 
 
 def test_answers_outside_the_care_set_are_free() -> None:
