@@ -85,7 +85,7 @@ def test_minimised_tables_simulate_as_the_truth_tables_evaluate(circuit: Circuit
     mapped = minimise(circuit, 0, silent).circuit
     inputs = random_inputs(mapped, 100)
     answers = mapped.evaluate(inputs)
-    if all(table.function.care.all() for _, table in circuit.tables()):  # type: ignore[union-attr]
+    if all(table.function.care.all() for table in circuit.tables().values()):  # type: ignore[union-attr]
         expected = circuit.evaluate(inputs)
         assert all((answers[port] == expected[port]).all() for port in answers)
     check(mapped)
@@ -188,7 +188,7 @@ def mapped(inputs: tuple[str, ...], outputs: tuple[str, ...], rule: Callable[[An
         (Table("table", word, TruthTable.exact(inputs, outputs, values)),),
         {"y": (Slice("table", 0, len(outputs)),)},
     )
-    ((_, table),) = minimise(circuit, 0, silent).circuit.tables()
+    (table,) = minimise(circuit, 0, silent).circuit.tables().values()
     assert isinstance(table.function, LutNetwork)
     return table.function
 

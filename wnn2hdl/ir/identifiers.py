@@ -50,7 +50,6 @@ def _plain(name: str) -> bool:
     return bool(joined) and len(name) <= _LONGEST
 
 
-
 def name_from(text: str) -> str:
     """A name made from any text, such as that of a folder: other characters become underscores."""
     joined = "_".join(part for part in re.split(r"[^A-Za-z0-9]+", text) if part)[:_LONGEST].rstrip("_")

@@ -78,14 +78,25 @@ def test_two_circuits_of_one_name_are_refused() -> None:
         both(replace(ALIKE, name="c")).definitions()
 
 
-def test_tables_go_by_the_names_of_their_circuits_and_are_found_once() -> None:
+def test_tables_go_by_the_names_of_their_circuits_or_their_own_and_are_found_once() -> None:
     def inverters(name: str, count: int) -> Circuit:
         nodes = tuple(Table(f"t{i}", (Slice("a", i),), INVERTER) for i in range(count))
         return circuit(*nodes, name=name, count=(Slice("t0"), Slice("a")))
 
-    assert [name for name, _ in both(inverters("single", 1)).tables()] == ["single"]
-    pair = both(inverters("pair", 2))
-    assert [name for name, _ in pair.tables()] == ["pair_t0", "pair_t1"]
+    assert list(both(inverters("single", 1)).tables()) == ["single"]
+    assert list(both(inverters("pair", 2)).tables()) == ["t0", "t1"]
+
+
+def test_tables_of_one_name_in_two_circuits_go_by_both_names() -> None:
+    inner = circuit(
+        Table("t0", (Slice("a"),), INVERTER),
+        Table("t1", (Slice("b"),), INVERTER),
+        name="in",
+        y=(Slice("t0"),),
+    )
+    instance = Instance("i", inner, {"a": A.word, "b": B.word})
+    nodes = (instance, Table("t0", (Slice("i.y"),), INVERTER), Table("t2", (Slice("b"),), INVERTER))
+    assert list(circuit(*nodes, y=(Slice("t0"),)).tables()) == ["in_t0", "t1", "c_t0", "t2"]
 
 
 def test_a_change_is_made_once_to_each_definition() -> None:
