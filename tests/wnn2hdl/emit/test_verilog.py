@@ -162,7 +162,7 @@ def test_a_block_reads_like_written_by_hand() -> None:
     assert "// Pixel classifier. Combinational.\nmodule my_pixel (\n    input  wire [23:0] rgb,\n" in text
     assert "    wire R7 = rgb[23];\n    wire R6 = rgb[22];\n    wire G5 = rgb[13];\n" in text
     assert "    assign class_bits = (R7 & ~R6) | G5;\n" in text
-    assert "    assign edge_bit = (~bits[1] | ~bits[5]) & bits[4];\n" in text
+    assert "    assign edge_bit = bits[4] & (~bits[1] | ~bits[5]);\n" in text
     assert "    my_pixel pixel_8 (.rgb(window[215:192]), .class_bits(pixel_8_class_bits));\n" in text
     assert "    my_edge edges (.bits(bits), .edge_bit(edge_bit));\n" in text
     assert not re.search(r"\\|\$\d|always|src =", text)
