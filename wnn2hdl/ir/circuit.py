@@ -51,6 +51,8 @@ class Circuit:
         check_identifier(f"x_{self.name}")
         check_comment(self.summary)
         widths = {port.name: port.width for port in self.inputs}
+        if len(widths) != len(self.inputs):
+            raise ValueError(f"two inputs of {self.name} have one name")
         for node in self.nodes:
             check_identifier(node.name)
             for word in node.reads:
@@ -64,12 +66,15 @@ class Circuit:
             self._check(word, widths, port)
             if port in widths:
                 raise ValueError(f"{port} in {self.name} is an output and a net")
+            Port(port, width_of(word))
         for care in self.care:
             self._check(care.word, widths, "the care set")
             if width_of(care.word) != care.allowed.width:
                 raise ValueError(f"a care set of {care.allowed.width} bits is put on {care.word}")
 
     def _check(self, word: Word, widths: Mapping[str, int], reader: str) -> None:
+        if not word:
+            raise ValueError(f"{reader} in {self.name} reads no bits")
         for part in word:
             if part.net not in widths:
                 raise ValueError(f"{reader} in {self.name} reads {part.net} before it is driven")

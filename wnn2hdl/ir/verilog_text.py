@@ -16,8 +16,11 @@ _COMMANDS = frozenset(
 
 def check_identifier(name: object) -> None:
     """Raise ValueError unless a name of a port, a node or a net can stand in any HDL as it is."""
-    if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > _LONGEST:
-        raise ValueError(f"{name!r:.80} is no name: use letters, digits and underscores, a letter first")
+    plain = isinstance(name, str) and _NAME.fullmatch(name) and "__" not in name and name[-1] != "_"
+    if not isinstance(name, str) or not plain or len(name) > _LONGEST:
+        raise ValueError(
+            f"{name!r:.80} is no name: use letters, digits and single underscores, a letter first"
+        )
     if name.lower() in RESERVED:
         raise ValueError(f"the name {name} is a reserved word of an HDL or of C++")
 

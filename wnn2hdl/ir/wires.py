@@ -18,7 +18,10 @@ _SLICE = re.compile(r"([A-Za-z]\w*(?:\.\w+)?)\[(\d+):(\d+)\]", re.ASCII)
 
 @dataclass(frozen=True)
 class Port:
-    """A port of a circuit: its name and its width in bits."""
+    """A port of a circuit: its name, an identifier of every HDL, and its width in bits.
+
+    The name of the clock, which no circuit has as a port of its own, is ``clk``.
+    """
 
     name: str
     width: int
@@ -27,6 +30,8 @@ class Port:
         check_identifier(self.name)
         if self.width < 1:
             raise ValueError(f"port {self.name} has {self.width} bits; the fewest are 1")
+        if self.name == "clk":
+            raise ValueError("a port cannot be called clk, as the clock is")
 
     @property
     def word(self) -> "Word":
