@@ -103,7 +103,7 @@ def neighbourhood(dataset: Dataset, size: int, seed: int) -> tuple[float, int]:
         result = evaluate(model_classifier(train(dataset.subset(training))), dataset.subset(test), silent)
         right += int(np.trace(result.confusion, axis1=1, axis2=2).sum())
         pixels += int(result.confusion.sum())
-    circuit = plan(train(dataset), CompileOptions(), silent).design
+    circuit = plan(train(dataset), "mine", CompileOptions(), silent).design
     return right / pixels, sum(len(network.luts) for network in circuit.networks.values())
 
 

@@ -4,8 +4,12 @@
 our Sobel and one written from its definition.
 """
 
-from wnn2hdl import elaborate
+from hdl_templates import sobel
+from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.nodes import Match
+from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.synth import Job, synthesise_all
 
 WIDTHS = (9, 220, 484)
@@ -22,14 +26,23 @@ endmodule
 """
 
 
+def matcher(width: int) -> Circuit:
+    """A circuit that counts in how many places two words agree."""
+    bits, reference = Port("bits", width), Port("reference_bits", width)
+    match = Match("agreement", bits.word, reference.word)
+    count = (Slice(match.name, 0, width.bit_length()),)
+    return Circuit("match", "Match and count.", (bits, reference), (match,), {"match_count": count})
+
+
 def plain_matcher(width: int) -> str:
     """The sum of all equal bits, as one would write it first."""
     count = width.bit_length()
     total = " + ".join(f"{{{count - 1}'d0, same[{i}]}}" for i in range(width))
     return (
-        f"module plain(input [{width - 1}:0] bits, input [{width - 1}:0] reference, "
+        f"module plain(input [{width - 1}:0] bits, input [{width - 1}:0] reference_bits, "
         f"output [{count - 1}:0] match_count);\n"
-        f"  wire [{width - 1}:0] same = ~(bits ^ reference);\n  assign match_count = {total};\nendmodule\n"
+        f"  wire [{width - 1}:0] same = ~(bits ^ reference_bits);\n"
+        f"  assign match_count = {total};\nendmodule\n"
     )
 
 
@@ -37,11 +50,11 @@ def main() -> None:
     """Print the table."""
     jobs = {}
     for width in WIDTHS:
-        ours = verilog(elaborate.match(width), name="bit_match", header=())
-        jobs[f"match {width}, ours"] = Job(ours, "bit_match")
+        ours = verilog(component(matcher(width), style="cells"), prefix="our_", header=())
+        jobs[f"match {width}, ours"] = Job(ours, "our_match")
         jobs[f"match {width}, plain sum"] = Job(plain_matcher(width), "plain")
-    sobel = verilog(elaborate.sobel(), name="sobel", header=())
-    jobs["Sobel, ours"] = Job(sobel, "sobel", baseline=True)
+    text = verilog(sobel.Parameters().create(), prefix="our_", header=())
+    jobs["Sobel, ours"] = Job(text, "our_sobel", baseline=True)
     jobs["Sobel, from the definition"] = Job(PLAIN_SOBEL, "plain", baseline=True)
     print("| circuit | LUTs | CARRY4 | LUTs a bit | delay ps |\n|---|---|---|---|---|")
     for name, result in synthesise_all(jobs).items():

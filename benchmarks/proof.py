@@ -1,94 +1,100 @@
 """Proof times, mutants caught and simulators' speed of builds: ``python benchmarks/proof.py build/NAME …``.
 
-Mutants are those of the module named, with the cells it instantiates; a simulator that runs them on every
-cared-for code says which ones the proof has to catch.
+Mutants are of the circuits that can be simulated on every cared-for input, each by itself, and of the whole
+text: hierarchy, compressors, matcher and all.
 """
 
 import re
 import sys
-import tempfile
 import time
-from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
-from wnn2hdl.build.circuits import PARTS, Circuits, component, port_arrays
+from benchmarks.mutation import check_proof, make_mutants
 from wnn2hdl.build.design import Design
+from wnn2hdl.build.emission import Files
 from wnn2hdl.build.verification import open_build
+from wnn2hdl.elaborate import component
 from wnn2hdl.synth import synthesise
 from wnn2hdl.verify.compiled import CompiledSimulator, run_compiled
-from wnn2hdl.verify.mutation import check_proof, make_mutants
+from wnn2hdl.verify.equivalence import Circuit
 from wnn2hdl.verify.proof import prove, prove_netlists
 from wnn2hdl.verify.simulation import simulate
-from wnn2hdl.verify.specification import Specification
-from wnn2hdl.verify.vectors import stimulus
 
 MUTANTS = 200
+"""Of the whole text, and of all circuits by themselves together."""
+
+MUTATED = ("pixel", "edge")
+"""Circuits whose mutants are simulated on every cared-for input."""
+
+WHOLE = 256
+"""Windows on which mutants of the whole text are simulated, drawn from the stimulus of the circuit."""
+
 WINDOWS = 254 * 254
 SIMULATORS: tuple[CompiledSimulator, ...] = ("icarus", "verilator")
-MUTATED: tuple[Literal["pixel", "edge"], ...] = ("pixel", "edge")
 
 
-def proof_times(design: Design, circuits: Circuits) -> None:
-    """Seconds for each part by itself, Verilog against model and netlist against Verilog."""
-    text = circuits.verilog.read_text(encoding="utf-8")
-    for part in PARTS[design.target]:
-        proof = prove(design.specification, {part: circuits.verilog})[part]
-        synthesis = synthesise(text, design.specification.part(part).module)
-        with tempfile.TemporaryDirectory() as name:
-            netlist = Path(name) / "netlist.v"
-            netlist.write_text(synthesis.netlist_verilog, encoding="utf-8")
-            after = prove_netlists(design.specification, {part: (circuits.verilog, netlist)})[part]
+def proof_times(design: Design, text: str) -> None:
+    """Seconds for each circuit by itself, Verilog against model and netlist against Verilog."""
+    for part in design.parts:
+        circuit = Circuit((text,), design.module(part))
+        proof = prove(design.specification, {part: circuit})[part]
+        netlist = Circuit((synthesise(text, circuit.top).netlist_verilog,), circuit.top)
+        after = prove_netlists(design.specification, {part: (circuit, netlist)})[part]
         print(f"  {part}: {proof.status} in {proof.seconds:.2f} s, ", end="")
         print(f"netlist {after.status} in {after.seconds:.2f} s")
 
 
-def mutants_caught(design: Design, circuits: Circuits) -> None:
-    """Caught of catchable mutants of pixel and edge filter."""
-    if not isinstance(design.specification, Specification):
-        return  # mutants are judged by the circuit's answer to one pixel
-    text = circuits.verilog.read_text(encoding="utf-8")
-    for part in MUTATED:
-        module = design.specification.part(part).module
-        found = re.search(rf"^module {module}\b.*?^endmodule$", text, re.DOTALL | re.MULTILINE)
-        if found is None:
-            continue
-        models = "".join(
-            re.findall(r"^module (?:LUT\d|MUXF\d)\b.*?^endmodule\n", text, re.DOTALL | re.MULTILINE)
-        )
-        mutants = [
-            replace(mutant, verilog=f"{mutant.verilog}\n{models}")
-            for mutant in make_mutants(found[0], MUTANTS, 0)
-        ]
+def mutants_caught(design: Design, text: str) -> None:
+    """Caught of harmful mutants, and false alarms among the others."""
+    alone = [part for part in MUTATED if part in design.parts and part != design.circuit.name]
+    counted = [(part, _module(text, design.module(part)), MUTANTS // len(alone)) for part in alone]
+    for part, verilog, count in [*counted, (design.circuit.name, text, MUTANTS)]:
+        draw = design.specification.claims[part].stimulus
+        assert draw is not None
+        inputs = draw()
+        if part not in alone:
+            rows = np.random.default_rng(0).permutation(len(next(iter(inputs.values()))))[:WHOLE]
+            inputs = {port: bits[rows] for port, bits in inputs.items()}
         started = time.perf_counter()
-        report = check_proof(design.specification, part, mutants, "icarus")
+        mutants = make_mutants(verilog, count, 0)
+        report = check_proof(design.specification, part, design.module(part), mutants, inputs)
         print(f"  {part}: {report} ({time.perf_counter() - started:.0f} s)")
+        for kind, listed in (("missed", report.missed), ("false alarm", report.false_alarms)):
+            print("".join(f"    {kind}: {mutant.fault}\n" for mutant in listed), end="")
 
 
-def simulators_speed(design: Design, circuits: Circuits) -> None:
-    """Windows a second of the whole block, in each simulator."""
-    part = PARTS[design.target][-1]
-    inputs = stimulus(design.specification, part)
+def simulators_speed(design: Design, files: Files) -> None:
+    """Windows a second of the whole circuit, in each simulator."""
+    claim = design.specification.claims[design.circuit.name]
+    assert claim.stimulus is not None
+    inputs = claim.stimulus()
     repeats = -(-WINDOWS // len(next(iter(inputs.values()))))
     windows = {port: np.concatenate([values] * repeats)[:WINDOWS] for port, values in inputs.items()}
     for simulator in SIMULATORS:
         started = time.perf_counter()
-        _, seconds = run_compiled(design.specification.part(part), [circuits.verilog], windows, simulator)
+        _, seconds = run_compiled(claim, design.module(claim.part), files.simulated, windows, simulator)
         whole = time.perf_counter() - started
         print(
             f"  {simulator}: {WINDOWS / seconds:.0f} windows a second, {WINDOWS / whole:.0f} with compiling"
         )
-    expected = design.specification.evaluate(part, windows)
-    result = simulate(component(design, part), port_arrays(windows), port_arrays(expected))
+    result = simulate(component(design.circuit, style=design.style), windows, claim.answers(windows))
     print(f"  amaranth: {result.vectors_per_second:.0f} windows a second")
+
+
+def _module(text: str, name: str) -> str:
+    """A module alone; pixel and edge filter instantiate nothing but the vendor's cells."""
+    found = re.search(rf"^module {name}\b.*?^endmodule$", text, re.DOTALL | re.MULTILINE)
+    assert found is not None
+    return found[0]
 
 
 if __name__ == "__main__":
     for folder in sys.argv[1:]:
         print(folder)
-        its_design, its_circuits, _ = open_build(Path(folder))
-        proof_times(its_design, its_circuits)
-        mutants_caught(its_design, its_circuits)
-        simulators_speed(its_design, its_circuits)
+        its_design, its_files, _ = open_build(Path(folder))
+        verilog = its_files.verilog.read_text(encoding="utf-8")
+        proof_times(its_design, verilog)
+        mutants_caught(its_design, verilog)
+        simulators_speed(its_design, its_files)

@@ -23,14 +23,16 @@ from pathlib import Path
 
 import numpy as np
 
-from hdl_templates.lookup import Style
-from wnn2hdl import elaborate
 from wnn2hdl.apps.sweep import PixelSets, Plan, Recipe, Trial, draw, grid
 from wnn2hdl.apps.sweep.trial import table_and_network
 from wnn2hdl.dataset import from_masks, from_samples
+from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
 from wnn2hdl.encode import high_bits
-from wnn2hdl.ir import LutNetwork, TruthTable
+from wnn2hdl.ir import PIXEL_BITS, LutNetwork, Style, TruthTable
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.nodes import Table
+from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.synth import Job, synthesise_all
 
 SIDE = 256
@@ -54,7 +56,11 @@ def run_grid(options: argparse.Namespace, trials: int) -> tuple[float, float]:
 
 def as_compiled(network: LutNetwork, style: Style) -> Job:
     """The circuit as `compile` writes it."""
-    return Job(verilog(elaborate.pixel(ENCODER, network, style=style), name="pixel", header=()), "pixel")
+    code = tuple(Slice("rgb", position) for position in ENCODER.pixel_positions)
+    table = Table("decision", code, network)
+    drivers = {"class_bits": (Slice("decision", 0, len(network.outputs)),)}
+    circuit = Circuit("pixel", "Pixel classifier.", (Port("rgb", PIXEL_BITS),), (table,), drivers)
+    return Job(verilog(component(circuit, style=style), prefix="our_", header=()), "our_pixel")
 
 
 def as_case(table: TruthTable) -> Job:

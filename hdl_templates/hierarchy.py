@@ -13,11 +13,13 @@ class Part(wiring.Component):
         module_name: name of that module; components of one name must be equal.
         keep_hierarchy: whether a synthesiser must not dissolve the module into its surroundings.
         clocked: whether it has registers, so that its module has the port ``clk``.
+        latency: cycles from inputs to outputs; 0 of what is combinational.
     """
 
     module_name: str
     keep_hierarchy = False
     clocked = False
+    latency = 0
 
     @property
     def summary(self) -> str:

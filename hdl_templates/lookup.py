@@ -1,5 +1,6 @@
 """LUT networks in hardware: as vendor cells, or as equations that a synthesiser may restructure."""
 
+from collections import Counter
 from collections.abc import Sequence
 
 from amaranth.hdl import Cat, Const, Instance, Module, Mux, Signal, Value
@@ -41,6 +42,8 @@ def draw_network(
     muxes = {cell.name for cell in network.muxes}
     reads = _reads(network)
     for cell in network.cells:
+        if cell.name not in reads:
+            continue
         pins = [signals[name] for name in _pins(cell)]
         if not isinstance(platform, Emission):
             value = _simulated(cell, pins)
@@ -65,13 +68,15 @@ def draw_network(
 def unread_inputs(network: LutNetwork) -> list[int]:
     """Positions of the inputs that nothing reads."""
     reads = _reads(network)
-    return [position for position, name in enumerate(network.inputs) if not reads.get(name)]
+    return [position for position, name in enumerate(network.inputs) if name not in reads]
 
 
-def _reads(network: LutNetwork) -> dict[str, int]:
-    counts: dict[str, int] = {}
-    for name in [pin for cell in network.cells for pin in _pins(cell)] + [x for _, x in network.outputs]:
-        counts[name] = counts.get(name, 0) + 1
+def _reads(network: LutNetwork) -> Counter[str]:
+    """How often each signal is read on the way to an output."""
+    counts = Counter(signal for _, signal in network.outputs)
+    for cell in reversed(network.cells):
+        if cell.name in counts:
+            counts.update(_pins(cell))
     return counts
 
 

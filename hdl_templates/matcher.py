@@ -4,6 +4,7 @@ from amaranth.hdl import Cat, Module, Value
 
 from hdl_templates.compressor import Columns, MatchCompressor, add_columns
 from hdl_templates.hierarchy import place
+from hdl_templates.ports import named
 
 PAIRS = 3
 """Pairs of bits that one 6-input LUT compares: the first stage takes two LUTs for three pairs."""
@@ -27,7 +28,8 @@ def draw_match(m: Module, bits: Value, reference: Value, *, name: str, platform:
     for first in range(0, width, PAIRS):
         last = min(first + PAIRS, width)
         if last - first == 1:
-            columns[0].append(~(bits[first] ^ reference[first]))
+            same = ~(bits[first] ^ reference[first])
+            columns[0].append(named(m, f"{name}_same_{first}", same, platform))
             continue
         unit = MatchCompressor(pairs=last - first)
         place(m, f"{name}_compare_{first // PAIRS}", unit, platform)

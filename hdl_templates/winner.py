@@ -3,14 +3,10 @@
 from collections.abc import Sequence
 from typing import Literal
 
-from amaranth.hdl import Const, Module, Mux, Value
-
-from hdl_templates.ports import named
+from amaranth.hdl import Const, Module, Mux, Signal, Value
 
 
-def draw_winner(
-    m: Module, words: Sequence[Value], *, tie: Literal["first", "last"], name: str, platform: object
-) -> Value:
+def draw_winner(m: Module, words: Sequence[Value], *, tie: Literal["first", "last"], name: str) -> Value:
     """Compare neighbours and pass on the larger one; combinational, latency 0 cycles.
 
     Args:
@@ -18,7 +14,6 @@ def draw_winner(
         words: at least two unsigned words.
         tie: which of equal words wins.
         name: what the names of the signals begin with.
-        platform: the platform of ``m``.
 
     Returns:
         The index of the winner, ``(len(words) - 1).bit_length()`` bits.
@@ -30,12 +25,15 @@ def draw_winner(
         above = []
         for pair in range(len(candidates) // 2):
             (low, low_index), (high, high_index) = candidates[2 * pair : 2 * pair + 2]
-            later = high > low if tie == "first" else high >= low
-            wins = named(m, f"{name}_later_{level}_{pair}", later, platform)
-            index = named(
-                m, f"{name}_index_{level}_{pair}", Mux(wins, high_index, low_index)[:width], platform
-            )
-            best = named(m, f"{name}_best_{level}_{pair}", Mux(wins, high, low), platform)
+            # Signals, in simulation too: expressions would double in size from level to level.
+            later = Signal(name=f"{name}_later_{level}_{pair}")
+            index = Signal(width, name=f"{name}_index_{level}_{pair}")
+            best = Signal(max(len(low), len(high)), name=f"{name}_best_{level}_{pair}")
+            m.d.comb += [
+                later.eq(high > low if tie == "first" else high >= low),
+                index.eq(Mux(later, high_index, low_index)),
+                best.eq(Mux(later, high, low)),
+            ]
             above.append((best, index))
         if len(candidates) % 2:
             above.append(candidates[-1])

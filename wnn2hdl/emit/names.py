@@ -1,10 +1,14 @@
 """Which name each bit of a module goes by in the emitted text."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable
 
 from wnn2hdl.emit.expression import Piece, pieces
 from wnn2hdl.emit.netlist import Bit, BitVector, Cell, Module
+from wnn2hdl.ir.identifiers import RESERVED
+
+_NO_LETTER = re.compile(r"\W", re.ASCII)
 
 
 class Names:
@@ -12,10 +16,11 @@ class Names:
 
     A word that a cell drives takes the name of a net of the same bits: of an output port, else of a net that
     the component named, else one of its own. Bits of input ports to which the component gave a name, as in
-    ``R7``, go by that name.
+    ``R7``, go by that name. Names that Verilog cannot have, or has for something else, are changed.
 
     Attributes:
         widths: bits of each named net, ports among them.
+        instances: the name of each cell that is an instance of a module.
         aliases: for each name of a bit of an input port, that bit's own reference.
     """
 
@@ -25,9 +30,15 @@ class Names:
         self._outputs: dict[BitVector, str] = {}
         self.widths = {port: len(bits) for port, bits in (*module.inputs.items(), *module.outputs.items())}
         self.aliases: dict[str, Piece] = {}
-        self._by_bits: dict[BitVector, list[str]] = {}
-        for name, net in module.nets.items():
-            self._by_bits.setdefault(net.bits, []).append(name)
+        self.instances: dict[Cell, str] = {}
+        for cell in module.cells:
+            if cell.is_instance:
+                self.instances[cell] = self._plain(cell.name)
+        self._by_bits: dict[BitVector, str] = {}
+        # A name that Amaranth numbered, as in ``total$7``, only where there is no other.
+        for name in sorted(module.nets, key=lambda name: "$" in name):
+            if not module.nets[name].hidden:
+                self._by_bits.setdefault(module.nets[name].bits, name)
         for port, bits in module.inputs.items():
             self._references |= {bit: (port, position, 1) for position, bit in enumerate(bits)}
         self._name_input_bits()
@@ -63,24 +74,31 @@ class Names:
             self._references[bit] = (plain, 0, 1)
 
     def _name_driven(self, cell: Cell, pin: str, bits: BitVector) -> None:
-        candidates = self._by_bits.get(bits, [])
-        port = next((name for name in candidates if name in self._module.outputs), None)
-        public = next((name for name in candidates if not self._module.nets[name].hidden), None)
+        public = self._by_bits.get(bits)
+        port = next((name for name, word in self._module.outputs.items() if word == bits), None)
         if port is not None:
             name = port
-        elif cell.kind[0] != "$" and not _is_vendor_cell(cell):
+        elif cell.is_instance and not _is_vendor_cell(cell):
             name = self._new(f"{cell.name}_{pin}", len(bits))
         else:
             name = self._new(public or f"term_{cell.name.strip('$')}", len(bits))
         self._references |= {bit: (name, position, 1) for position, bit in enumerate(bits)}
 
     def _new(self, wanted: str, width: int) -> str:
-        base = plain = wanted.replace("$", "_").replace("\\", "").replace(".", "_")
+        """A name for a net of so many bits."""
+        plain = self._plain(wanted)
+        self.widths[plain] = width
+        return plain
+
+    def _plain(self, wanted: str) -> str:
+        """An identifier like ``wanted`` that nothing else in the module has."""
+        base = plain = _NO_LETTER.sub("_", wanted)
+        if not base[0].isalpha():
+            base = plain = f"n{base}"
         number = 0
-        while plain in self.widths:
+        while plain in self.widths or plain in self.instances.values() or plain.lower() in RESERVED:
             number += 1
             plain = f"{base}_{number}"
-        self.widths[plain] = width
         return plain
 
 

@@ -41,7 +41,7 @@ class Net:
     initial: int | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cell:
     """An operator, a flip-flop, or an instance of another module.
 
@@ -60,6 +60,11 @@ class Cell:
     attributes: Mapping[str, str]
     inputs: Mapping[str, BitVector]
     outputs: Mapping[str, BitVector]
+
+    @property
+    def is_instance(self) -> bool:
+        """Whether it is an instance of another module, or of a vendor's cell."""
+        return not self.kind.startswith("$")
 
     def number(self, parameter: str) -> int:
         """The value of a numeric parameter."""
@@ -99,7 +104,7 @@ def read_modules(rtlil: Sequence[str], ports: Mapping[str, Sequence[str]]) -> di
         except (OSError, ValueError, LookupError) as error:
             raise ToolError("Yosys wrote no netlist that can be read", value=error, output=log) from error
     for name, data in found.items():
-        wanted = {port: place for place, port in enumerate(ports[name])}
+        wanted = {port: place for place, port in enumerate(ports.get(name, ()))}
         ordered = sorted(data["ports"].items(), key=lambda item: wanted.get(item[0], -1))
         data["ports"] = dict(ordered)
     return {name: _module(name, data, found) for name, data in found.items()}

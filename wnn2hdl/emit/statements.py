@@ -15,6 +15,13 @@ _ARITHMETIC = {"$add": "+", "$sub": "-", "$mul": "*"}
 _COMPARISONS = {"$ge": ">=", "$gt": ">", "$le": "<=", "$lt": "<", "$eq": "==", "$ne": "!="}
 _REDUCTIONS = {"$reduce_or": "|", "$reduce_bool": "|", "$reduce_and": "&", "$reduce_xor": "^"}
 _FLIP_FLOP = "$dff"
+_KINDS = (
+    {_FLIP_FLOP, "$mux", "$not", "$neg", "$logic_not"}
+    | _BITWISE.keys()
+    | _ARITHMETIC.keys()
+    | _COMPARISONS.keys()
+    | _REDUCTIONS.keys()
+)
 
 
 @dataclass(frozen=True)
@@ -66,9 +73,12 @@ class _Translation:
 
     def run(self) -> tuple[list[Statement], dict[str, int]]:
         """See `statements`."""
-        found = [self._output(port, bits) for port, bits in self.module.outputs.items() if self._joined(bits)]
-        for port, bits in self.module.outputs.items():
-            if self._joined(bits) and len(bits) > 1:
+        words = {port: self.names.word(bits) for port, bits in self.module.outputs.items()}
+        # The others are driven by a cell, under their own name.
+        composed = [port for port, word in words.items() if word != [(port, 0, self.names.widths[port])]]
+        found = [self._output(port, self.module.outputs[port]) for port in composed]
+        for port in composed:
+            if len(words[port]) > 1:
                 self.names.joined_output(port)
         found += [self._statement(cell) for cell in self.module.cells if not self._inlined(cell)]
         found += [
@@ -81,11 +91,6 @@ class _Translation:
         """Words that only tools have a name for."""
         public = {net.bits for net in self.module.nets.values() if not net.hidden}
         return {net.bits for net in self.module.nets.values() if net.hidden} - public
-
-    def _joined(self, bits: BitVector) -> bool:
-        """Whether an output port needs a statement: no cell drives just its bits."""
-        driver = self.drivers.get(bits[0])
-        return driver is None or bits not in driver.outputs.values()
 
     def _inlined(self, cell: Cell) -> bool:
         """Whether a cell's expression stands where its output is read.
@@ -113,8 +118,10 @@ class _Translation:
 
     def _statement(self, cell: Cell) -> Statement:
         self.read_nets = set()
-        if cell.kind[0] != "$":
+        if cell.is_instance:
             return self._instance(cell)
+        if cell.kind not in _KINDS:
+            raise NotImplementedError(f"{self.module.name} has a {cell.kind}, for which there is no Verilog")
         (output,) = cell.outputs.values()
         ((net, _, _),) = self.names.driven(output)
         if cell.kind == _FLIP_FLOP:
@@ -140,13 +147,11 @@ class _Translation:
         if cell.kind in _BITWISE | _ARITHMETIC:
             left, right = (self._extended(cell, pin, len(output)) for pin in "AB")
             return f"{left} {(_BITWISE | _ARITHMETIC)[cell.kind]} {right}"
-        if cell.kind in _COMPARISONS:
-            width = max(len(cell.inputs["A"]), len(cell.inputs["B"]))
-            left, right = (self._extended(cell, pin, width) for pin in "AB")
-            if cell.number("A_SIGNED") and cell.number("B_SIGNED"):
-                left, right = f"$signed({left})", f"$signed({right})"
-            return f"{left} {_COMPARISONS[cell.kind]} {right}"
-        raise NotImplementedError(f"{self.module.name} has a {cell.kind}, for which there is no Verilog")
+        width = max(len(cell.inputs["A"]), len(cell.inputs["B"]))
+        left, right = (self._extended(cell, pin, width) for pin in "AB")
+        if cell.number("A_SIGNED") and cell.number("B_SIGNED"):
+            left, right = f"$signed({left})", f"$signed({right})"
+        return f"{left} {_COMPARISONS[cell.kind]} {right}"
 
     def _tree(self, cell: Cell) -> Operation:
         """A one-bit operation with the operations of its operands inside."""
@@ -188,7 +193,7 @@ class _Translation:
             word = self.names.driven(bits)
             driven += [net for net, _, _ in word]
             pins.append(f".{pin}({render_word(word, self.names.widths)})")
-        head = f"{marks}{cell.kind}{f' #({parameters})' if parameters else ''} {cell.name}"
+        head = f"{marks}{cell.kind}{f' #({parameters})' if parameters else ''} {self.names.instances[cell]}"
         return Statement(tuple(driven), frozenset(self.read_nets), ", ".join(pins), head=head)
 
 

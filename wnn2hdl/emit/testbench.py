@@ -6,6 +6,7 @@ import numpy as np
 from amaranth.lib.wiring import Component
 from numpy.typing import NDArray
 
+from hdl_templates.hierarchy import Part
 from hdl_templates.vectors import pack, port_widths
 
 Arrays = Mapping[str, NDArray[np.bool_]]
@@ -39,29 +40,37 @@ def vectors(component: Component, inputs: Arrays, expected: Arrays) -> str:
     return "".join(lines)
 
 
-def testbench(
-    component: Component, *, name: str, count: int, vectors_file: str, sources: Sequence[str]
-) -> str:
+def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: Sequence[str]) -> str:
     """A self-checking testbench ``NAME_tb`` for the module ``NAME``.
 
-    It reads its vectors from the folder it is started in, prints ``PASS`` and their number, or ``FAIL`` with
-    the inputs, the actual and the expected outputs of the first mismatch (unknown bits are one) and stops. A
-    failing run ends with ``$stop``: a status other than 0 from Verilator's program and from ``vvp -N``; plain
-    ``vvp`` asks what to do. ``$fatal`` would need SystemVerilog.
+    It applies a vector in each cycle and compares the outputs `Part.latency` cycles later. It reads its
+    vectors from the folder it is started in, prints ``PASS`` and their number, or ``FAIL`` with the inputs,
+    the actual and the expected outputs of the first mismatch (unknown bits are one) and stops. A failing run
+    ends with ``$stop``: a status other than 0 from Verilator's program and from ``vvp -N``; plain ``vvp``
+    asks what to do. ``$fatal`` would need SystemVerilog.
 
     Args:
-        component: the circuit under test, for its ports.
+        part: the circuit under test, for its ports and its latency.
         name: its module.
         count: how many vectors the file holds.
         vectors_file: name of the file with the `vectors`, without a folder.
         sources: names of the Verilog files of the circuit, for the comment that tells how to run it.
     """
-    inputs, outputs = port_widths(component)
+    inputs, outputs = port_widths(part)
+    latency = part.latency
+    # What is compared lags behind what is applied; they are one vector where there is no latency.
+    applied, words, checked, apply, ready = "vector", "vector", "i", "", ""
+    if latency:
+        applied, words, checked = "applied", "applied, vector", f"i < {latency} ? 0 : i - {latency}"
+        apply = f"            applied = vectors[i < {count} ? i : {count - 1}];\n"
+        ready = f"i >= {latency} && "
     total = sum(inputs.values()) + sum(outputs.values())
     fields = _fields(inputs | outputs, total)
-    connections = ",\n".join(f"        .{port}({port})" for port in (*inputs, *outputs))
+    clock = ["clk"] if part.clocked else []
+    connections = ",\n".join(f"        .{port}({port})" for port in (*clock, *inputs, *outputs))
     wires = "\n".join(
-        [f"    wire {_range(width)}{port} = vector[{fields[port]}];" for port, width in inputs.items()]
+        ["    reg clk = 1'b0;" for _ in clock]
+        + [f"    wire {_range(width)}{port} = {applied}[{fields[port]}];" for port, width in inputs.items()]
         + [f"    wire {_range(width)}{port};" for port, width in outputs.items()]
         + [
             f"    wire {_range(width)}{port}_expected = vector[{fields[port]}];"
@@ -70,12 +79,13 @@ def testbench(
     )
     differs = "\n                || ".join(f"{port} !== {port}_expected" for port in outputs)
     shown = "\n".join(
-        [f'                $display("  {port} = %h", {port});' for port in inputs]
+        [f'                $display("  {port} = %h", vector[{fields[port]}]);' for port in inputs]
         + [
             f'                $display("  {port} = %h, expected %h", {port}, {port}_expected);'
             for port in outputs
         ]
     )
+    edges = "            clk = 1'b1;\n            #1 clk = 1'b0;\n" if part.clocked else ""
     files = " ".join([*sources, f"{name}_tb.v"])
     return f"""\
 // Checks {name} against {count} answers of the model; run it in this folder,
@@ -83,7 +93,7 @@ def testbench(
 // with Verilator: verilator --binary --top-module {name}_tb {files} && obj_dir/V{name}_tb
 module {name}_tb;
     reg [{total - 1}:0] vectors [0:{count - 1}];
-    reg [{total - 1}:0] vector;
+    reg [{total - 1}:0] {words};
     integer i;
 {wires}
 
@@ -93,18 +103,18 @@ module {name}_tb;
 
     initial begin
         $readmemh("{vectors_file}", vectors);
-        for (i = 0; i < {count}; i = i + 1) begin
-            vector = vectors[i];
+        for (i = 0; i < {count + latency}; i = i + 1) begin
+{apply}            vector = vectors[{checked}];
             #1;
             // A vector with unknown bits was not read: the file is missing or too short.
-            if (^vector === 1'bx
-                || {differs}) begin
-                $display("FAIL: {name}, vector %0d of {count}", i);
+            if ({ready}(^{{{words}}} === 1'bx
+                || {differs})) begin
+                $display("FAIL: {name}, vector %0d of {count}", {checked});
 {shown}
                 $stop;
                 $finish;
             end
-        end
+{edges}        end
         $display("PASS: {name}, {count} vectors");
         $finish;
     end

@@ -7,6 +7,7 @@ from amaranth.hdl import ClockDomain, Fragment
 from amaranth.lib.wiring import Component
 
 from hdl_templates.hierarchy import Emission, Part
+from wnn2hdl.emit.expression import constant
 from wnn2hdl.emit.netlist import Module, read_modules
 from wnn2hdl.emit.statements import UNUSED, Statement, statements
 
@@ -41,6 +42,10 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
         [_rtlil(inner, name, prefix) for name, inner in parts.items()],
         {name: list(inner.signature.members) for name, inner in parts.items()},
     )
+    if foreign := modules.keys() - parts.keys():
+        raise NotImplementedError(
+            f"{part.module_name} holds {sorted(foreign)}, for which there is no Verilog"
+        )
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header)
     return "\n".join([comment + LINT, *(_module(inner, modules[name]) for name, inner in parts.items())])
 
@@ -68,9 +73,7 @@ def _text(module: Module) -> str:
     registers = {statement.drives[0]: statement for statement in found if statement.clock}
     ports = [f"    input  wire {_range(len(bits))}{port}" for port, bits in module.inputs.items()]
     ports += [
-        f"    output {_register(registers[port], widths)}"
-        if port in registers
-        else f"    output wire {_range(len(bits))}{port}"
+        f"    output {'reg ' if port in registers else 'wire'} {_range(len(bits))}{port}"
         for port, bits in module.outputs.items()
     ]
     levels = _levels(found)
@@ -78,16 +81,12 @@ def _text(module: Module) -> str:
         (statement for statement in found if not statement.clock),
         key=lambda statement: (UNUSED in statement.drives, levels[statement.drives[0]]),
     )
-    lines = [
-        f"    {_register(register, widths)};"
-        for net, register in registers.items()
-        if net not in module.outputs
-    ]
+    lines = [f"    reg {_range(widths[net])}{net};" for net in registers if net not in module.outputs]
     lines += [_line(statement, widths, module) for statement in ordered]
-    lines += [
-        _wrapped(f"    always @({register.clock}) {net} <= ", register.text)
-        for net, register in registers.items()
-    ]
+    for net, register in registers.items():
+        if register.initial is not None:
+            lines.append(f"    initial {net} = {constant(register.initial, widths[net])};")
+        lines.append(_wrapped(f"    always @({register.clock}) {net} <= ", register.text))
     return "\n".join([f"module {module.name} (", ",\n".join(ports), ");", *lines, "endmodule"]) + "\n"
 
 
@@ -100,12 +99,6 @@ def _line(statement: Statement, widths: Mapping[str, int], module: Module) -> st
     (net,) = statement.drives
     start = "assign " if net in module.outputs else f"wire {_range(widths[net])}"
     return _wrapped(f"    {start}{net} = ", statement.text)
-
-
-def _register(statement: Statement, widths: Mapping[str, int]) -> str:
-    (net,) = statement.drives
-    initial = "" if statement.initial is None else f" = {widths[net]}'h{statement.initial:x}"
-    return f"reg {_range(widths[net])}{net}{initial}"
 
 
 def _levels(found: Sequence[Statement]) -> dict[str, int]:

@@ -183,7 +183,10 @@ def care_from_json(data: dict[str, Any]) -> CareSet:
             return Codes(flags)
         case Patterns.kind:
             size = -(-width // 8)
-            packed = np.frombuffer(b"".join(map(bytes.fromhex, data["patterns"])), dtype=np.uint8)
+            patterns = [bytes.fromhex(text) for text in data["patterns"]]
+            if any(len(pattern) != size for pattern in patterns):
+                raise ValueError(f"a pattern does not have {width} bits")
+            packed = np.frombuffer(b"".join(patterns), dtype=np.uint8)
             rows = np.unpackbits(packed.reshape(-1, size)[:, ::-1], axis=1, bitorder="little")
             return Patterns(rows[:, :width].astype(np.bool_))
         case Implied.kind:

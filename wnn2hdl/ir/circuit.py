@@ -12,6 +12,7 @@ from typing import ClassVar
 
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.nodes import Leaf, Table
+from wnn2hdl.ir.verilog_text import check_comment, check_identifier
 from wnn2hdl.ir.wires import Bits, Port, Word, read_word, width_of
 
 
@@ -26,6 +27,8 @@ class Care:
 @dataclass(frozen=True, eq=False)
 class Circuit:
     """Nodes between ports.
+
+    Names can stand in Verilog as they are, and the summary as a comment; ValueError is raised for others.
 
     Attributes:
         name: of the circuit; in emitted Verilog its module is called ``PREFIX_name``.
@@ -44,8 +47,14 @@ class Circuit:
     care: tuple[Care, ...] = ()
 
     def __post_init__(self) -> None:
+        # Behind a prefix a reserved word is none.
+        check_identifier(f"x_{self.name}")
+        check_comment(self.summary)
         widths = {port.name: port.width for port in self.inputs}
+        if len(widths) != len(self.inputs):
+            raise ValueError(f"two inputs of {self.name} have one name")
         for node in self.nodes:
+            check_identifier(node.name)
             for word in node.reads:
                 self._check(word, widths, node.name)
             for net, width in node.drives.items():
@@ -53,15 +62,19 @@ class Circuit:
                     raise ValueError(f"two drivers of {net} in {self.name}")
                 widths[net] = width
         for port, word in self.drivers.items():
+            check_identifier(port)
             self._check(word, widths, port)
             if port in widths:
                 raise ValueError(f"{port} in {self.name} is an output and a net")
+            Port(port, width_of(word))
         for care in self.care:
             self._check(care.word, widths, "the care set")
             if width_of(care.word) != care.allowed.width:
                 raise ValueError(f"a care set of {care.allowed.width} bits is put on {care.word}")
 
     def _check(self, word: Word, widths: Mapping[str, int], reader: str) -> None:
+        if not word:
+            raise ValueError(f"{reader} in {self.name} reads no bits")
         for part in word:
             if part.net not in widths:
                 raise ValueError(f"{reader} in {self.name} reads {part.net} before it is driven")

@@ -40,7 +40,10 @@ def circuit_from_json(data: Any) -> Circuit:
                 {str(port): word_from_json(word) for port, word in item["outputs"].items()},
                 tuple(Care(word_from_json(care["word"]), care_from_json(care)) for care in item["care"]),
             )
-            known[circuit.name] = circuit
+            if known.setdefault(circuit.name, circuit) is not circuit:
+                raise ValueError(f"two circuits are called {circuit.name}")
+        circuit.definitions()
+        _ = circuit.latency
         return circuit
     except (KeyError, TypeError, ValueError, AttributeError, UnboundLocalError, OverflowError) as error:
         raise ModelFileError("not a circuit", value=error, hint="compile the model again") from error

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import ModelFileError
 from wnn2hdl.ir.tables import unpack_contents
+from wnn2hdl.ir.verilog_text import check_identifier
 
 LUT_INPUTS = 6
 """Inputs of the 7-series LUT (Xilinx UG474)."""
@@ -93,6 +94,8 @@ class LutNetwork:
         for name, signal in self.outputs:
             if signal not in known and signal not in CONSTANTS:
                 raise ValueError(f"output {name} reads {signal}, which nothing drives")
+        for name in (*self.inputs, *(cell.name for cell in self.cells), *(name for name, _ in self.outputs)):
+            check_identifier(name)
 
     def _check_muxes(self) -> None:
         height = {lut.name: 0 for lut in self.luts}

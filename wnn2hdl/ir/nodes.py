@@ -70,6 +70,13 @@ class Threshold:
     at_least: int
 
     @property
+    def constant(self) -> bool | None:
+        """The answer, where it is the same for every word."""
+        if self.at_least <= 0:
+            return True
+        return False if self.at_least >= 1 << width_of(self.word) else None
+
+    @property
     def reads(self) -> tuple[Word, ...]:
         """See `Table.reads`."""
         return (self.word,)

@@ -4,6 +4,8 @@ A pixel is 24 bits: red in 23…16, green in 15…8, blue in 7…0. A window is 
 the lowest bits: pixel ``i`` is ``window[24*i +: 24]``.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -21,14 +23,14 @@ def pixel_bits(pixels: ArrayLike) -> Bits:
         bool ``[samples, 24 * pixels]``.
     """
     array = np.asarray(pixels, dtype=np.uint8)
-    array = array.reshape(len(array), -1, len(CHANNELS))[:, :, ::-1]
-    return np.unpackbits(array.reshape(len(array), -1), axis=1, bitorder="little").astype(np.bool_)
+    channels = np.flip(array, axis=-1).reshape(len(array), math.prod(array.shape[1:]))
+    return np.unpackbits(channels, axis=1, bitorder="little").astype(np.bool_)
 
 
 def bits_to_pixels(bits: Bits) -> NDArray[np.uint8]:
     """The inverse of `pixel_bits`: uint8 ``[samples, pixels, 3]``."""
     packed = np.packbits(bits, axis=1, bitorder="little")
-    return packed.reshape(len(bits), -1, len(CHANNELS))[:, :, ::-1]
+    return packed.reshape(len(bits), packed.shape[1] // len(CHANNELS), len(CHANNELS))[:, :, ::-1]
 
 
 def pixels_of_codes(

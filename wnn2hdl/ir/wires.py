@@ -8,6 +8,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.ir.verilog_text import check_identifier
+
 Bits = NDArray[np.bool_]
 """Values of a port or a word: bool ``[samples, width]``; element 0 of a row is the least significant."""
 
@@ -16,14 +18,20 @@ _SLICE = re.compile(r"([A-Za-z]\w*(?:\.\w+)?)\[(\d+):(\d+)\]", re.ASCII)
 
 @dataclass(frozen=True)
 class Port:
-    """A port of a circuit: its name and its width in bits."""
+    """A port of a circuit: its name, an identifier of every HDL, and its width in bits.
+
+    The name of the clock, which no circuit has as a port of its own, is ``clk``.
+    """
 
     name: str
     width: int
 
     def __post_init__(self) -> None:
+        check_identifier(self.name)
         if self.width < 1:
             raise ValueError(f"port {self.name} has {self.width} bits; the fewest are 1")
+        if self.name == "clk":
+            raise ValueError("a port cannot be called clk, as the clock is")
 
     @property
     def word(self) -> "Word":

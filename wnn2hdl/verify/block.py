@@ -119,8 +119,8 @@ def block_specification(
         model,
         encoder,
         edges,
-        flags_of(care.get("pixel", Everything(encoder.width)), "pixel"),
-        flags_of(care.get("edge", Everything(WINDOW_BITS)), "edge filter"),
+        flags_of(care.get("pixel", Everything(encoder.width)), encoder.width, "pixel"),
+        flags_of(care.get("edge", Everything(WINDOW_BITS)), WINDOW_BITS, "edge filter"),
     )
     claims = [_pixel_claim(block), _match_claim(block)]
     reference = [_pixel(block), _match()]

@@ -1,4 +1,4 @@
-"""Are two combinational Verilog modules equal on every input? Yosys reads them, ABC decides.
+"""Are two Verilog modules equal on every input? Yosys reads them, ABC decides.
 
 Yosys turns each module into an and-inverter graph (AIGER) by ``proc``, ``techmap``, ``aigmap`` and
 ``flatten``; ABC builds the miter of two graphs and runs its combinational equivalence checker ``&cec`` on it:
@@ -6,40 +6,64 @@ it simulates, guesses internal equivalences, proves or refutes each by SAT, merg
 An answer of "undecided" is an error here, never a yes.
 
 What is not a function of the inputs is refused: undriven, doubly driven and looped wires by ``check
--assert``, registers by their count in the graph, latches by Yosys's AIGER writer; and each ``x`` is made a
-free input (``setundef -anyseq``), which shows in the graph's count of inputs.
+-assert``, registers of a combinational circuit by their count in the graph, latches by Yosys's AIGER writer;
+and each ``x`` is made a free input (``setundef -anyseq``), which shows in the graph's count of inputs.
+
+A pipeline of latency L answers L clock edges after its inputs. Its graph is unrolled over L + 1 cycles, and
+its last outputs are compared as a function of its first inputs. All that may not matter is a free input of
+its own: what the registers hold at first, and the inputs of all later cycles. A path with a register too few
+or too many, a register whose contents survive, or an enable makes the outputs depend on these, and the
+circuits differ. All registers have to be clocked by the rising edge of the port ``clk``.
 """
 
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.tools import find_yosys, run_abc
+from wnn2hdl.verify.aiger import Aiger
 
-_PRIMITIVE = re.compile(r"\b(LUT[1-6]|LUT6_2|MUXF[78]|CARRY4|INV)\b")
+_PRIMITIVE = re.compile(r"\b(LUT[1-6]|LUT6_2|MUXF[78]|CARRY4|INV|FD[RSCP]E|SRL16E|SRLC16E|SRLC32E|BUFG)\b")
 _VERDICT = re.compile(r"Networks are (equivalent|NOT EQUIVALENT|UNDECIDED)")
 _PORT_BIT = re.compile(r"^(input|output) (\d+) (\d+) (\S+)$", re.MULTILINE)
 _ANSWER = re.compile(r"Eval result: \\(\w+) = \d+'([01x]+)\.")
 _EVALUATION_SECONDS = 60.0
+
+CLOCK = "clk"
+"""The clock of circuits with registers."""
+
+# Enables and synchronous resets become logic; a falling edge becomes an inverter at the clock.
+_ONE_CLOCK = [
+    "opt_clean",
+    "dfflegalize -cell $_DFF_P_ 01",
+    f"select -assert-none t:$_DFF_P_ w:{CLOCK} %co1:+$_DFF_P_[C] %d",
+    "aigmap",
+    "opt_clean",
+]
+_REGISTERS_AS_WIRES = "module \\$_DFF_P_ (input D, C, output Q); assign Q = D; endmodule\n"
+
 _CONFLICTS = 1_000_000
 """SAT conflicts allowed at a node; ABC's own limit of 1000 leaves some equal circuits undecided."""
 
 
 @dataclass(frozen=True)
 class Circuit:
-    """A combinational Verilog module.
+    """A Verilog module.
 
     Attributes:
         sources: Verilog texts, read in this order; of two modules of one name the first counts. Cells of the
             7-series library come before all: Yosys's models of them count, whatever a source defines.
         top: the module.
+        latency: clock cycles from inputs to outputs; 0 if the module is combinational, otherwise it has the
+            port `CLOCK`.
     """
 
     sources: tuple[str, ...]
     top: str
+    latency: int = 0
 
 
 @dataclass(frozen=True)
@@ -50,11 +74,13 @@ class _Graph:
         inputs: port and bit of each input of the graph.
         outputs: the same for its outputs; Yosys names none that is constant.
         size: how many outputs there are.
+        free: how many inputs follow that may not matter.
     """
 
     inputs: dict[int, tuple[str, int]]
     outputs: dict[int, tuple[str, int]]
     size: int
+    free: int = 0
 
     def fits(self, other: "_Graph") -> bool:
         """Whether inputs and outputs of the same place belong to the same port."""
@@ -81,11 +107,12 @@ def find_differences(
         For each pair the values of the input ports, or None where the circuits are equal on every input.
 
     Raises:
-        CheckError: a circuit has registers or reads undefined values: it is no function of its inputs.
+        CheckError: a combinational circuit has registers, or a circuit reads undefined values: it is no
+            function of its inputs.
         ToolError: Yosys cannot read a circuit, the ports differ, or a tool gave up.
     """
-    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
-        folder = Path(name)
+    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as place:
+        folder = Path(place)
         circuits = list(dict.fromkeys(circuit for pair in pairs for circuit in pair))
         graphs = dict(zip(circuits, _write_graphs(circuits, folder, timeout), strict=True))
         numbers = {circuit: number for number, circuit in enumerate(circuits)}
@@ -93,8 +120,15 @@ def find_differences(
         for number, (left, right) in enumerate(pairs):
             if not graphs[left].fits(graphs[right]):
                 raise ToolError("two circuits to compare have different ports", value=(left.top, right.top))
+            files = [f"{numbers[left]}.aig", f"{numbers[right]}.aig"]
+            free = graphs[left].free, graphs[right].free
+            if any(free):
+                shared = len(graphs[left].inputs)
+                for side, (name, more) in enumerate(zip(files, ((0, free[1]), (free[0], 0)), strict=True)):
+                    files[side] = f"{number}_{side}.aig"
+                    Aiger.read(folder / name).widened(shared, *more).write(folder / files[side])
             # -n: by place, not by name, so that the counterexample's bits stand in the inputs' order.
-            script.append(f"miter -n {numbers[left]}.aig {numbers[right]}.aig; &get; &cec -m -C {_CONFLICTS}")
+            script.append(f"miter -n {' '.join(files)}; &get; &cec -m -C {_CONFLICTS}")
             script.append(f"write_cex {number}.cex")
         verdicts = _VERDICT.findall(run_abc("\n".join(script) + "\n", timeout=timeout, cwd=folder))
         if len(verdicts) != len(pairs) or "UNDECIDED" in verdicts:
@@ -108,7 +142,7 @@ def find_differences(
 def evaluate(
     circuit: Circuit, inputs: Mapping[str, int], widths: Mapping[str, int], outputs: Sequence[str]
 ) -> dict[str, int]:
-    """What a circuit answers on one input, by Yosys's constant evaluation of its Verilog.
+    """What a circuit answers on one input that stands still, by Yosys's constant evaluation of its Verilog.
 
     Args:
         circuit: the circuit.
@@ -123,6 +157,15 @@ def evaluate(
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
         script = [*_read_cells([circuit]), *_read(circuit, 0, folder), "flatten", "opt_clean"]
+        if circuit.latency:
+            (folder / "wires.v").write_text(_REGISTERS_AS_WIRES, encoding="utf-8")
+            script += [
+                "opt_expr",
+                "techmap",
+                "dfflegalize -cell $_DFF_P_ 01",
+                "techmap -map wires.v",
+                "opt_clean",
+            ]
         script.append(f"eval {settings} " + " ".join(f"-show {port}" for port in outputs))
         log = find_yosys().run("\n".join(script) + "\n", timeout=_EVALUATION_SECONDS, cwd=folder)
     answers = {port: bits for port, bits in _ANSWER.findall(log) if port in outputs}
@@ -139,12 +182,28 @@ def _write_graphs(circuits: Sequence[Circuit], folder: Path, timeout: float) -> 
         # Mapping each module once, before it is flattened into its nine instances, is what makes this quick.
         script += ["check -assert", "setundef -anyseq", "opt_expr", "techmap", "opt_expr", "aigmap"]
         script += ["opt_clean", "rename -hide", "flatten -noscopeinfo"]
+        script += _ONE_CLOCK if circuit.latency else []
         script += [f"write_aiger -map {number}.map {number}.aig"]
     find_yosys().run("\n".join(script) + "\n", timeout=timeout, cwd=folder)
-    return [
+    graphs = [
         _checked(folder / f"{number}.aig", folder / f"{number}.map", circuit)
         for number, circuit in enumerate(circuits)
     ]
+    return [
+        _unrolled(folder / f"{number}.aig", graphs[number], circuit.latency)
+        if circuit.latency
+        else graphs[number]
+        for number, circuit in enumerate(circuits)
+    ]
+
+
+def _unrolled(path: Path, graph: _Graph, cycles: int) -> _Graph:
+    """Put the unrolled graph in the place of a pipeline's."""
+    first = tuple(place for place, (port, _) in sorted(graph.inputs.items()) if port != CLOCK)
+    aiger = Aiger.read(path).unrolled(cycles, first)
+    aiger.write(path)
+    inputs = {position: graph.inputs[place] for position, place in enumerate(first)}
+    return replace(graph, inputs=inputs, free=aiger.inputs - len(first))
 
 
 def _read(circuit: Circuit, number: int, folder: Path) -> list[str]:
@@ -176,7 +235,7 @@ def _checked(graph: Path, ports: Path, circuit: Circuit) -> _Graph:
     named: dict[str, dict[int, tuple[str, int]]] = {"input": {}, "output": {}}
     for direction, place, bit, port in _PORT_BIT.findall(ports.read_text(encoding="utf-8")):
         named[direction][int(place)] = (port, int(bit))
-    if registers:
+    if registers and not circuit.latency:
         raise CheckError("the circuit has registers, so it is not combinational", value=circuit.top)
     if inputs != len(named["input"]):
         raise CheckError("the circuit reads an undefined value (x)", value=circuit.top)

@@ -50,7 +50,7 @@ def neighbourhood_specification(
     model: WisardModel, encoder: Neighbourhood, care: Mapping[str, CareSet]
 ) -> Specification:
     """The claim of a model of neighbourhoods; where the care set is missing, everything matters."""
-    flags = flags_of(care.get(PART, Everything(encoder.width)), PART)
+    flags = flags_of(care.get(PART, Everything(encoder.width)), encoder.width, PART)
     neighbours = Neighbours(model, encoder, flags)
     claim = Claim(
         PART,

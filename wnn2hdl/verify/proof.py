@@ -15,6 +15,9 @@ A neighbourhood's window is not held: the class bits of both sides are masked by
 The mask is one function of the inputs on both sides, so masked outputs are equal for all windows exactly if
 the outputs are equal for the cared-for ones.
 
+A pipeline is in the wrapper with its registers, and is equal to the reference so many cycles later
+(`wnn2hdl.verify.equivalence`); a mask that reads an input passes as many registers as the pipeline has.
+
 The care set is not empty (`wnn2hdl.verify.specification.flags_of` refuses that), so no claim holds vacuously.
 """
 
@@ -24,7 +27,7 @@ from dataclasses import dataclass
 
 from wnn2hdl.errors import ToolError
 from wnn2hdl.ir import PIXEL_BITS
-from wnn2hdl.verify.equivalence import Circuit, evaluate, find_differences
+from wnn2hdl.verify.equivalence import CLOCK, Circuit, evaluate, find_differences
 from wnn2hdl.verify.specification import Claim, Specification, show, value_bits, word_values
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
@@ -41,7 +44,7 @@ class Counterexample:
         part: the circuit.
         inputs: values of its input ports.
         expected: the model's outputs.
-        actual: the circuit's outputs.
+        actual: the circuit's outputs; of a pipeline, for inputs that stand still.
     """
 
     part: str
@@ -50,6 +53,8 @@ class Counterexample:
     actual: Mapping[str, int]
 
     def __str__(self) -> str:
+        if self.actual == self.expected:
+            return f"for {show(self.inputs)}: the outputs depend on registers or inputs of another time"
         answers = ", ".join(
             f"{port} is {self.actual[port]:#x} (the model says {value:#x})"
             for port, value in self.expected.items()
@@ -141,7 +146,9 @@ def prove_netlists(
 
 def held_in_care(specification: Specification, claim: Claim, circuit: Circuit) -> Circuit:
     """A circuit in the wrapper that holds its inputs inside the care set (see the top of this file)."""
-    header = [f"input [{width - 1}:0] {port}" for port, width in claim.inputs.items()]
+    clocked = bool(circuit.latency)
+    header = [f"input {CLOCK}"] if clocked else []
+    header += [f"input [{width - 1}:0] {port}" for port, width in claim.inputs.items()]
     header += [f"output [{width - 1}:0] {port}" for port, width in claim.outputs.items()]
     nets = {port: port for port in (*claim.inputs, *claim.outputs)}
     lines = [f"module {_HELD}({', '.join(header)});"]
@@ -153,18 +160,27 @@ def held_in_care(specification: Specification, claim: Claim, circuit: Circuit) -
             lines.append(
                 f"  proof__care_pixel care_{port}_{low} (.free({port}{bits}), .rgb(held_{port}{bits}));"
             )
+    if clocked:
+        nets[CLOCK] = CLOCK
     for port, mask in claim.masks.items():
         width = claim.outputs[port]
+        # What an input says about an output comes out as much later as the output.
+        delay = circuit.latency if mask.port in claim.inputs else 0
         nets[port] = f"any_{port}"
         lines += [
             f"  wire [{width - 1}:0] any_{port};",
-            f"  wire cared_{port};",
-            f"  {mask.module} care_{port} (.{mask.port}({mask.port}), .cared(cared_{port}));",
-            f"  assign {port} = any_{port} & {{{width}{{cared_{port}}}}};",
+            f"  wire cared_{port}_0;",
+            f"  {mask.module} care_{port} (.{mask.port}({mask.port}), .cared(cared_{port}_0));",
+            *(
+                f"  reg cared_{port}_{cycle + 1}; always @(posedge {CLOCK}) "
+                f"cared_{port}_{cycle + 1} <= cared_{port}_{cycle};"
+                for cycle in range(delay)
+            ),
+            f"  assign {port} = any_{port} & {{{width}{{cared_{port}_{delay}}}}};",
         ]
     connections = ", ".join(f".{port}({net})" for port, net in nets.items())
     wrapper = "\n".join([*lines, f"  {circuit.top} circuit ({connections});", "endmodule", ""])
-    return Circuit((wrapper, specification.care, *circuit.sources), _HELD)
+    return Circuit((wrapper, specification.care, *circuit.sources), _HELD, circuit.latency)
 
 
 def _against_model(claim: Claim, circuit: Circuit, values: Mapping[str, int]) -> Counterexample:
@@ -173,7 +189,7 @@ def _against_model(claim: Claim, circuit: Circuit, values: Mapping[str, int]) ->
     held = {port: word_values(bits)[0] for port, bits in samples.items()}
     expected = {port: word_values(bits)[0] for port, bits in claim.answers(samples).items()}
     actual = _answers(claim, circuit, held)
-    if actual == expected:
+    if actual == expected and not circuit.latency:
         raise ToolError("ABC's counterexample is none: circuit and model agree on it", value=held)
     return Counterexample(claim.part, held, expected, actual)
 

@@ -115,12 +115,11 @@ def _bench(
 
 
 def _record(component: Component, bench: Bench, path: Path) -> None:
+    simulator = Simulator(component)
     try:
-        with path.open("w", encoding="utf-8") as stream:
-            simulator = Simulator(component)
+        with path.open("w", encoding="utf-8") as stream, simulator.write_vcd(stream):
             simulator.add_testbench(bench)
-            with simulator.write_vcd(stream):
-                simulator.run()
+            simulator.run()
     except OSError as error:
         raise InputError(
             "cannot record the waves",

@@ -86,13 +86,23 @@ class Specification:
     care: str
 
 
-def flags_of(care: CareSet, what: str) -> NDArray[np.bool_]:
+def flags_of(care: CareSet, width: int, what: str) -> NDArray[np.bool_]:
     """A care set of codes, bool ``[2**width]``.
 
+    Args:
+        care: the care set.
+        width: bits of the codes.
+        what: whose codes they are, for the errors.
+
     Raises:
-        InputError: it is empty; any circuit would equal the model on no input at all.
+        InputError: it is one of codes of another width, or empty: any circuit would equal the model on no
+            input at all.
     """
-    flags = care.project(tuple(range(care.width)))
+    if care.width != width:
+        raise InputError(
+            f"the care set of the {what} is one of other codes", value=f"{care.width} bits, not {width}"
+        )
+    flags = care.project(tuple(range(width)))
     if not flags.any():
         raise InputError(
             f"the care set of the {what} is empty, so there is nothing to prove",

@@ -2,7 +2,7 @@
 
 import pytest
 
-from wnn2hdl.emit.expression import Operation, close, render, widen
+from wnn2hdl.emit.expression import Operation, Piece, constant, pieces, render, render_word
 
 WIDTHS = {"a": 8, "b": 9, "c": 1}
 
@@ -16,23 +16,38 @@ def test_chains_lose_their_parentheses_and_mixtures_keep_them() -> None:
     assert render(Operation("?", ("s", chain, "d"))) == "s ? (a & ~b & c) : d"
 
 
+def test_a_choice_inside_a_choice_is_no_chain() -> None:
+    inner = Operation("?", ("s", "a", "b"))
+    assert render(Operation("?", ("t", inner, "c")).flat()) == "t ? (s ? a : b) : c"
+    assert render(Operation("~", (Operation("~", ("a",)),)).flat()) == "~~a"
+
+
+def test_neighbours_are_joined_to_words() -> None:
+    bits: list[Piece] = [("a", 2, 1), ("a", 3, 1), ("b", 4, 1), ("a", 5, 2), ("a", 7, 1)]
+    assert pieces(bits) == [("a", 2, 2), ("b", 4, 1), ("a", 5, 3)]
+    assert pieces([("a", 3, 1), ("a", 2, 1)]) == [("a", 3, 1), ("a", 2, 1)]
+
+
+def test_constants_are_joined_to_numbers() -> None:
+    bits: list[Piece] = [("", 1, 1), ("", 0, 1), ("", 1, 1), ("a", 0, 1), ("", 1, 1)]
+    assert pieces(bits) == [("", 0b101, 3), ("a", 0, 1), ("", 1, 1)]
+
+
 @pytest.mark.parametrize(
-    ("text", "width", "expected"),
+    ("word", "text"),
     [
-        ("a - x[7:0]", 9, "{1'h0, a} - {1'h0, x[7:0]}"),
-        ("$signed(a) + $signed(b)", 10, "{a[7], a[7], a} + {b[8], b}"),
-        ("$signed(b) <= $signed(7'h40)", 1, "$signed(b) <= $signed(9'h1c0)"),
-        ("$signed(b) >= $signed(8'h40)", 1, "$signed(b) >= $signed(9'h40)"),
-        ("a == 3'h5", 1, "a == 8'h5"),
-        ("$signed(c) + $signed(x[5:2])", 6, "{c, c, c, c, c, c} + {x[5], x[5], x[5:2]}"),
-        ("{a, b}", 17, "{a, b}"),
-        ("a", 8, "a"),
+        ([("a", 0, 8)], "a"),
+        ([("c", 0, 1)], "c"),
+        ([("a", 7, 1)], "a[7]"),
+        ([("a", 2, 3)], "a[4:2]"),
+        ([("", 5, 3)], "3'h5"),
+        ([("a", 0, 8), ("", 0, 1), ("b", 0, 1)], "{b[0], 1'h0, a}"),
     ],
 )
-def test_operands_get_the_width_of_their_operator(text: str, width: int, expected: str) -> None:
-    assert widen(text, width, WIDTHS) == expected
+def test_a_word_is_written_with_the_most_significant_bits_first(word: list[Piece], text: str) -> None:
+    assert render_word(word, WIDTHS) == text
 
 
-def test_reductions_and_concatenations_lose_blanks() -> None:
-    assert close("| { a, b[1:0] }") == "|{a, b[1:0]}"
-    assert close("& a ") == "&a"
+def test_constants_have_all_their_digits() -> None:
+    assert constant(0, 9) == "9'h000"
+    assert constant(0xB3, 8) == "8'hb3"

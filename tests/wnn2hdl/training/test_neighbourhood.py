@@ -88,14 +88,14 @@ def test_a_classifier_of_pictures_has_a_halo(imagery: Path, tmp_path: Path) -> N
 
 
 def test_targets_and_models_must_fit(model: WisardModel) -> None:
-    with pytest.raises(InputError, match="looks at neighbours"):
-        plan(random_neighbourhood(3), CompileOptions(target="block"), silent)
-    with pytest.raises(InputError, match="does not look at neighbours"):
-        plan(model, CompileOptions(target="neighbourhood"), silent)
+    with pytest.raises(InputError, match="the model looks at a pixel's neighbours"):
+        plan(random_neighbourhood(3), "mine", CompileOptions(target="block"), silent)
+    with pytest.raises(InputError, match="the model does not look at a pixel's neighbours"):
+        plan(model, "mine", CompileOptions(target="neighbourhood"), silent)
     with pytest.raises(InputError, match="more than one pixel: at 3x3"):
         pixel_encoder(random_neighbourhood(3))
     with pytest.raises(InputError, match="--care"):
-        plan(random_neighbourhood(3), CompileOptions(mode="domain"), silent)
+        plan(random_neighbourhood(3), "mine", CompileOptions(mode="domain"), silent)
 
 
 @pytest.mark.slow

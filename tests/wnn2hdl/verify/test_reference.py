@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir import EdgeFilter, WisardModel
 from wnn2hdl.verify.equivalence import Circuit, evaluate
-from wnn2hdl.verify.reference import care_verilog, lookup, reference_name, reference_verilog
-from wnn2hdl.verify.specification import Specification, pixels_to_word
+from wnn2hdl.verify.reference import lookup
+from wnn2hdl.verify.specification import Claim, Specification, value_bits, word_values
+from wnn2hdl.verify.specify import specify
 
 
 @given(
@@ -31,59 +32,94 @@ def test_a_lookup_is_its_contents_at_every_address(contents: list[bool]) -> None
         assert wires[answer] == expected
 
 
+def verilog_says(specification: Specification, claim: Claim, inputs: dict[str, int]) -> dict[str, int]:
+    """What the reference module answers, by Yosys."""
+    return evaluate(
+        Circuit((specification.reference,), claim.module), inputs, claim.inputs, list(claim.outputs)
+    )
+
+
+def model_says(claim: Claim, inputs: dict[str, int]) -> dict[str, int]:
+    """What the model answers."""
+    samples = {port: value_bits(value, claim.inputs[port]) for port, value in inputs.items()}
+    return {port: word_values(bits)[0] for port, bits in claim.answers(samples).items()}
+
+
+def random_inputs(claim: Claim, count: int) -> list[dict[str, int]]:
+    rng = np.random.default_rng(0)
+    return [
+        {port: int.from_bytes(rng.bytes(32)) % (1 << width) for port, width in claim.inputs.items()}
+        for _ in range(count)
+    ]
+
+
 @pytest.mark.parametrize("classes", [2, 3, 5])
 def test_the_reference_pixel_says_what_the_model_says(circuits: ModuleType, classes: int) -> None:
-    specification = circuits.random_specification(classes, classes=classes)
-    circuit = Circuit((reference_verilog(specification),), reference_name("pixel"))
-    pixels = np.random.default_rng(0).integers(0, 256, (6, 3), dtype=np.uint8)
-    expected = specification.evaluate("pixel", {"rgb": pixels})["class_bits"]
-    for pixel, answer in zip(pixels, expected, strict=True):
-        found = evaluate(circuit, {"rgb": pixels_to_word(pixel)}, {"rgb": 24}, ["class_bits"])
-        assert found == {"class_bits": answer}
+    specification = circuits.exact(circuits.random_block(classes, classes=classes))
+    claim = specification.claims["pixel"]
+    for inputs in random_inputs(claim, 6):
+        assert verilog_says(specification, claim, inputs) == model_says(claim, inputs)
 
 
 def test_among_equal_responses_the_class_named_first_wins(circuits: ModuleType) -> None:
-    model = circuits.random_specification(0, classes=3).model
+    model = circuits.random_block(0, classes=3).model
     never_fires = WisardModel(model.encoder, model.classes, model.mapping, model.counts * 0, 1)
-    specification = Specification.exact(never_fires, circuits.random_specification(0).edge_filter)
-    circuit = Circuit((reference_verilog(specification),), reference_name("pixel"))
-    assert evaluate(circuit, {"rgb": 0x123456}, {"rgb": 24}, ["class_bits"]) == {"class_bits": 0}
+    specification = specify(never_fires, None, {})
+    found = verilog_says(specification, specification.claims["pixel"], {"rgb": 0x123456})
+    assert found == {"class_bits": 0}
 
 
 def test_each_class_may_have_a_mapping_of_its_own(circuits: ModuleType) -> None:
-    shared = circuits.random_specification(3).model
+    shared = circuits.random_block(3).model
     mapping = np.concatenate([shared.mapping, 5 - shared.mapping])
     own = WisardModel(shared.encoder, shared.classes, mapping, shared.counts, 1)
-    specification = Specification.exact(own, circuits.random_specification(3).edge_filter)
-    circuit = Circuit((reference_verilog(specification),), reference_name("pixel"))
+    specification = specify(own, None, {})
+    claim = specification.claims["pixel"]
     for word in (0x000000, 0xC0C020, 0x80C000, 0x40F00F):
-        samples = {"rgb": np.array([[word >> 16, word >> 8 & 255, word & 255]], dtype=np.uint8)}
-        answer = int(specification.evaluate("pixel", samples)["class_bits"][0])
-        assert evaluate(circuit, {"rgb": word}, {"rgb": 24}, ["class_bits"]) == {"class_bits": answer}
+        assert verilog_says(specification, claim, {"rgb": word}) == model_says(claim, {"rgb": word})
 
 
-def test_the_reference_block_says_what_the_model_says(circuits: ModuleType) -> None:
-    specification = circuits.random_specification(4, classes=3)
-    ports = specification.part("block_match")
-    circuit = Circuit((reference_verilog(specification),), reference_name("block_match"))
-    window = np.random.default_rng(1).integers(0, 256, (3, 9, 3), dtype=np.uint8)
-    reference = np.array([0, 0b101010101, 511])
-    expected = specification.evaluate("block_match", {"window": window, "reference": reference})
-    for sample in range(3):
-        values = {"window": pixels_to_word(window[sample]), "reference": int(reference[sample])}
-        found = evaluate(circuit, values, ports.inputs, list(ports.outputs))
-        assert found == {port: int(answers[sample]) for port, answers in expected.items()}
+@pytest.mark.parametrize("part", ["edge", "match", "block", "block_match"])
+def test_the_reference_of_each_circuit_says_what_the_model_says(circuits: ModuleType, part: str) -> None:
+    specification = circuits.exact(circuits.random_block(4, classes=3))
+    claim = specification.claims[part]
+    for inputs in random_inputs(claim, 3):
+        assert verilog_says(specification, claim, inputs) == model_says(claim, inputs)
 
 
-def test_care_pixel_is_nearest_cared_and_care_window_the_window_care_set(circuits: ModuleType) -> None:
-    specification = circuits.random_specification(5, care=0.4)
-    verilog = care_verilog(specification)
-    pixels = np.random.default_rng(2).integers(0, 256, (6, 3), dtype=np.uint8)
-    for pixel in pixels:
-        found = evaluate(
-            Circuit((verilog,), "care_pixel"), {"free": pixels_to_word(pixel)}, {"free": 24}, ["rgb"]
-        )
-        assert found == {"rgb": pixels_to_word(specification.nearest_cared(pixel))}
+def test_the_reference_neighbourhood_says_what_the_model_says(circuits: ModuleType) -> None:
+    specification = circuits.exact(circuits.random_neighbours(5, classes=3))
+    claim = specification.claims["neighbourhood"]
+    for inputs in random_inputs(claim, 6):
+        assert verilog_says(specification, claim, inputs) == model_says(claim, inputs)
+
+
+def test_the_care_modules_are_the_care_sets(circuits: ModuleType) -> None:
+    block = circuits.random_block(5, care=0.4)
+    specification = circuits.specification(block)
+    claim = specification.claims["pixel"]
+    for inputs in random_inputs(claim, 6):
+        care = Circuit((specification.care,), "proof__care_pixel")
+        found = evaluate(care, {"free": inputs["rgb"]}, {"free": 24}, ["rgb"])
+        held = claim.hold({"rgb": value_bits(inputs["rgb"], 24)})
+        assert found == {"rgb": word_values(held["rgb"])[0]}
     for window in (0, 100, 511):
-        found = evaluate(Circuit((verilog,), "care_window"), {"bits": window}, {"bits": 9}, ["cared"])
-        assert found == {"cared": int(specification.window_care[window])}
+        care = Circuit((specification.care,), "proof__care_window")
+        assert evaluate(care, {"bits": window}, {"bits": 9}, ["cared"]) == {
+            "cared": int(block.window_care[window])
+        }
+
+
+def test_the_care_module_of_a_neighbourhood_is_its_care_set(circuits: ModuleType) -> None:
+    neighbours = circuits.random_neighbours(5, care=0.5)
+    specification = circuits.specification(neighbours)
+    care = Circuit((specification.care,), "proof__care_neighbourhood")
+    for inputs in random_inputs(specification.claims["neighbourhood"], 6):
+        cared = neighbours.cared({"window": value_bits(inputs["window"], 216)})
+        assert evaluate(care, inputs, {"window": 216}, ["cared"]) == {"cared": int(cared[0, 0])}
+
+
+def test_an_edge_filter_without_patterns_never_finds_an_edge(circuits: ModuleType) -> None:
+    empty = EdgeFilter("none", np.zeros(512, dtype=np.bool_))
+    specification = specify(circuits.random_block(0).model, empty, {})
+    assert verilog_says(specification, specification.claims["edge"], {"bits": 16}) == {"edge_bit": 0}

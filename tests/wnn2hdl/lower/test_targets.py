@@ -1,0 +1,60 @@
+"""Which circuits a model can be compiled to."""
+
+import numpy as np
+import pytest
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import BitSelect, EdgeFilter, Neighbourhood, Tap, WisardModel
+from wnn2hdl.ir.care import Codes
+from wnn2hdl.lower.targets import TARGETS, Ingredients, target_for
+from wnn2hdl.verify.specify import care_sets
+
+PIXEL = BitSelect(("R7", "G7", "B7"))
+TAPS = tuple(Tap.of(1, column, PIXEL, np.arange(8) < 3) for column in range(3))
+EDGES = EdgeFilter("none", np.zeros(512, dtype=np.bool_))
+
+
+def model(encoder: BitSelect | Neighbourhood) -> WisardModel:
+    counts = np.random.default_rng(0).integers(0, 3, (2, 2, 8))
+    return WisardModel(encoder, ("a", "b"), np.array([[[0, 1, 2], [2, 1, 0]]]), counts, 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "circuit"),
+    [
+        ("block", "block_match"),
+        ("pixel", "pixel"),
+        ("edge", "edge"),
+        ("match", "match"),
+        ("neighbourhood", "neighbourhood"),
+    ],
+)
+def test_each_target_makes_its_circuit(name: str, circuit: str) -> None:
+    target = TARGETS[name]
+    encoder = Neighbourhood(3, TAPS) if target.of_neighbours else PIXEL
+    made = target.lower(Ingredients(model(encoder), EDGES))
+    assert made.name == circuit
+    assert ("edge" in made.definitions()) == target.has_edges
+
+
+def test_care_sets_go_to_the_circuits_of_their_names() -> None:
+    pixels, windows = np.arange(8) > 2, np.arange(512) % 2 == 0
+    care = {"pixel": Codes(pixels), "edge": Codes(windows)}
+    given = care_sets(TARGETS["block"].lower(Ingredients(model(PIXEL), EDGES, care)))
+    assert given == care
+    alone = care_sets(TARGETS["pixel"].lower(Ingredients(model(PIXEL))))
+    assert {name: allowed.kind for name, allowed in alone.items()} == {"pixel": "everything"}
+
+
+def test_without_a_name_the_first_fitting_target_is_taken() -> None:
+    assert target_for(model(PIXEL), None).name == "block"
+    assert target_for(model(PIXEL), "edge").name == "edge"
+    assert target_for(model(Neighbourhood(3, TAPS)), None).name == "neighbourhood"
+
+
+def test_a_target_of_another_kind_of_model_is_refused() -> None:
+    line = "the model looks at a pixel's neighbours: target pixel; choose neighbourhood, or another model"
+    with pytest.raises(InputError, match=line):
+        target_for(model(Neighbourhood(3, TAPS)), "pixel")
+    with pytest.raises(InputError, match="does not look at a pixel's neighbours: target neighbourhood"):
+        target_for(model(PIXEL), "neighbourhood")
