@@ -6,6 +6,7 @@ our Sobel and one written from its definition.
 
 from wnn2hdl import elaborate
 from wnn2hdl.emit import verilog
+from wnn2hdl.markdown import head, row
 from wnn2hdl.synth import Job, synthesise_all
 
 WIDTHS = (9, 220, 484)
@@ -43,12 +44,12 @@ def main() -> None:
     sobel = verilog(elaborate.sobel(), name="sobel", header=())
     jobs["Sobel, ours"] = Job(sobel, "sobel", baseline=True)
     jobs["Sobel, from the definition"] = Job(PLAIN_SOBEL, "plain", baseline=True)
-    print("| circuit | LUTs | CARRY4 | LUTs a bit | delay ps |\n|---|---|---|---|---|")
+    print(head(["circuit", "LUTs", "CARRY4", "LUTs per bit", "delay ps"]))
     for name, result in synthesise_all(jobs).items():
         resources = result.resources
         bits = next((width for width in WIDTHS if name.startswith(f"match {width},")), None)
         rate = "" if bits is None else f"{resources.luts / bits:.2f}"
-        print(f"| {name} | {resources.luts} | {resources.carry4} | {rate} | {resources.delay_ps} |")
+        print(row([name, resources.luts, resources.carry4, rate, resources.delay_ps]))
 
 
 if __name__ == "__main__":
