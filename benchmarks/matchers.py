@@ -7,13 +7,10 @@ our Sobel and one written from its definition.
 from hdl_templates import sobel
 from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
-<<<<<<< HEAD
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Match
 from wnn2hdl.ir.wires import Port, Slice
-=======
 from wnn2hdl.markdown import head, row
->>>>>>> h/scan
 from wnn2hdl.synth import Job, synthesise_all
 
 WIDTHS = (9, 220, 484)
