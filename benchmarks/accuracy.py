@@ -25,6 +25,7 @@ from wnn2hdl.evaluation.accuracy import evaluate
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.ir import BitSelect, WisardModel
 from wnn2hdl.lower.table import pixel_table
+from wnn2hdl.markdown import head, row
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.training.bitselect import MOST_LUTS, SIZES, look_up_table, select_bits
 from wnn2hdl.training.budget import code_histogram, saturates, train_discriminators
@@ -44,10 +45,10 @@ def main() -> None:
     given = parser.parse_args()
     dataset = from_masks(given.images, given.masks)
     images = [colour_histogram(image, 2) for image in dataset]
-    print("| classifier | accuracy | LUTs a pixel |\n|---|---|---|")
+    print(head(["classifier", "accuracy", "LUTs per pixel"]))
 
-    row("red threshold", *measured(images, partial(red_threshold, images)))
-    print(f"| quadratic logistic regression on RGB | {regression_accuracy(images):.4f} | |")
+    show("red threshold", *measured(images, partial(red_threshold, images)))
+    show("quadratic logistic regression on RGB", regression_accuracy(images))
 
     encoder = high_bits()
     histograms = np.stack([code_histogram(image, encoder) for image in images])
@@ -56,26 +57,26 @@ def main() -> None:
         train = partial(train_discriminators, histograms, encoder, CLASSES, seed)
         if not saturates(train(range(len(images)))):
             trials.append((cross_validate(images, train), train))
-    mean = np.mean([accuracy for accuracy, _ in trials])
-    print(f"| WiSARD n = 4, k = 16, mean of {len(trials)} mappings | {mean:.4f} | |")
+    mean = float(np.mean([accuracy for accuracy, _ in trials]))
+    show(f"WiSARD n = 4, k = 16, mean of {len(trials)} mappings", mean)
     best, most_accurate = max(trials, key=lambda trial: trial[0])
-    row("the best of them", best, luts(most_accurate(range(len(images)))))
+    show("the best of them", best, luts(most_accurate(range(len(images)))))
 
     for count in range(1, MOST_LUTS + 1):
 
         def select(chosen: Sequence[int], count: int = count) -> WisardModel:
             return select_bits([images[i] for i in chosen], CLASSES, luts=count, seed=given.seed)
 
-        row(f"bit selection, {count} LUT", *measured(images, select))
+        show(f"bit selection, {count} LUT", *measured(images, select))
 
     for size in SIZES:
         accuracy, needed = neighbourhood(dataset, size, given.seed)
-        row(f"neighbourhood {size}x{size}", accuracy, needed)
+        show(f"neighbourhood {size}x{size}", accuracy, needed)
 
 
-def row(name: str, accuracy: float, luts: int) -> None:
+def show(name: str, accuracy: float, luts: int | str = "") -> None:
     """Print a row of the table."""
-    print(f"| {name} | {accuracy:.4f} | {luts} |", flush=True)
+    print(row([name, accuracy, luts]), flush=True)
 
 
 def measured(images: Sequence[ColourHistogram], train: Trainer) -> tuple[float, int]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.ir import TruthTable
+from wnn2hdl.markdown import head, row
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.tools import find_yosys
 
@@ -100,8 +101,8 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100, help="functions of each kind")
     parser.add_argument("--efforts", type=int, nargs="+", default=[0, 1, 2], choices=[0, 1, 2, 3])
     options = parser.parse_args()
-    print("| functions | way | LUTs | against synth_xilinx | better | equal | worse | seconds a function |")
-    print("|---|---|---|---|---|---|---|---|")
+    compared = ["against synth_xilinx", "better", "equal", "worse"]
+    print(head(["functions", "way", "LUTs", *compared, "seconds per function"]))
     for kind, make in (("random", random_table), ("trained", trained_table)):
         tables = [make(seed) for seed in range(options.count)]
         groups = [("exact", tables[::2]), ("with don't-cares", tables[1::2])]
@@ -111,7 +112,7 @@ def main() -> None:
 
 def _rows(title: str, tables: list[TruthTable], efforts: Iterable[int]) -> None:
     reference: list[int] = []
-    ways = [("`synth_xilinx`", _batched(by_synth_xilinx)), ("`abc -lut 6`", _batched(by_abc))]
+    ways = [("synth_xilinx", _batched(by_synth_xilinx)), ("abc -lut 6", _batched(by_abc))]
     ways += [(f"effort {effort}", _ours(effort)) for effort in efforts]
     for name, way in ways:
         started = time.perf_counter()
@@ -121,8 +122,8 @@ def _rows(title: str, tables: list[TruthTable], efforts: Iterable[int]) -> None:
         change = 100 * (sum(luts) / max(sum(reference), 1) - 1)
         signs = np.sign(np.array(luts) - np.array(reference))
         better, equal, worse = ((signs == sign).sum() for sign in (-1, 0, 1))
-        figures = f"{sum(luts)} | {change:+.0f} % | {better} | {equal} | {worse} | {seconds:.2f}"
-        print(f"| {title} | {name} | {figures} |", flush=True)
+        figures = [sum(luts), f"{change:+.0f} %", better, equal, worse, seconds]
+        print(row([title, name, *figures]), flush=True)
 
 
 def _ours(effort: int) -> Way:

@@ -10,6 +10,7 @@ from wnn2hdl.emit import verilog
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Match
 from wnn2hdl.ir.wires import Port, Slice
+from wnn2hdl.markdown import head, row
 from wnn2hdl.synth import Job, synthesise_all
 
 WIDTHS = (9, 220, 484)
@@ -56,12 +57,12 @@ def main() -> None:
     text = verilog(sobel.Parameters().create(), prefix="our_", header=())
     jobs["Sobel, ours"] = Job(text, "our_sobel", baseline=True)
     jobs["Sobel, from the definition"] = Job(PLAIN_SOBEL, "plain", baseline=True)
-    print("| circuit | LUTs | CARRY4 | LUTs a bit | delay ps |\n|---|---|---|---|---|")
+    print(head(["circuit", "LUTs", "CARRY4", "LUTs per bit", "delay ps"]))
     for name, result in synthesise_all(jobs).items():
         resources = result.resources
         bits = next((width for width in WIDTHS if name.startswith(f"match {width},")), None)
         rate = "" if bits is None else f"{resources.luts / bits:.2f}"
-        print(f"| {name} | {resources.luts} | {resources.carry4} | {rate} | {resources.delay_ps} |")
+        print(row([name, resources.luts, resources.carry4, rate, resources.delay_ps]))
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ from wnn2hdl.evaluation.tagged import evaluate_tagged
 from wnn2hdl.files import make_folder
 from wnn2hdl.images import read_rgb, write_png
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.markdown import head, row
 from wnn2hdl.training.discriminators import image_histograms
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
@@ -57,24 +58,21 @@ def main() -> None:
     drawn = read_rgb(given.paper / "10_ram_4_bits.jpg")
     theirs = majority(drawn[..., 0] > drawn[..., 1])
     trees = share(view[..., 0] < TREE_RED)
-    print(
-        "| mapping | AUC on tagged chips | agreement | kappa | agreement without obvious mistakes | kappa |"
-    )
-    print("|---|---|---|---|---|---|")
+    without = "agreement without obvious mistakes"
+    print(head(["mapping", "AUC on tagged chips", "agreement", "kappa", without, "kappa"]))
     ranked = []
     for seed in range(given.seed, given.seed + given.mappings):
         model = trained(given.paper, seed, given.seed)
         tagged = evaluate_tagged(model_classifier(model), given.chips, given.tags, given.seed, silent)
         ours = deforested(model, view, SIDE, given.seed)
-        print(f"| {seed} | {tagged.auc:.3f} | {figures(theirs, majority(ours), trees)} |", flush=True)
+        print(row([seed, tagged.auc, *figures(theirs, majority(ours), trees)]), flush=True)
         ranked.append((tagged.auc or 0.0, model, ours))
     _, model, ours = max(ranked, key=lambda entry: entry[0])
     small = deforested(model, view, 20, given.seed)
     print(f"\nchosen: mapping {model.training['seed']}; in squares of {SIDE} as theirs:")
     print_kinds(theirs, majority(ours), trees)
-    print(
-        f"\nsquares of 20, the majority in each square of theirs: {figures(theirs, majority(small), trees)}"
-    )
+    agreement = ", ".join(figures(theirs, majority(small), trees))
+    print(f"\nsquares of 20, the majority in each square of theirs: {agreement}")
     make_folder(given.output.parent)
     write_png(given.output, side_by_side(view, drawn, ours, small, theirs))
     print(f"written to {given.output}")
@@ -114,12 +112,12 @@ def obvious_mistakes(theirs: Squares, trees: NDArray[np.float64]) -> Squares:
     return np.asarray((theirs & (trees > EVIDENTLY_TREE)) | (~theirs & (trees < EVIDENTLY_OPEN)))
 
 
-def figures(theirs: Squares, ours: Squares, trees: NDArray[np.float64]) -> str:
+def figures(theirs: Squares, ours: Squares, trees: NDArray[np.float64]) -> list[str]:
     """Agreement and kappa, on all squares and without the authors' obvious mistakes."""
     cells = []
     for chosen in (np.ones_like(theirs), ~obvious_mistakes(theirs, trees)):
         cells += [(theirs == ours)[chosen].mean(), cohen_kappa_score(theirs[chosen], ours[chosen])]
-    return " | ".join(f"{cell:.3f}" for cell in cells)
+    return [f"{cell:.3f}" for cell in cells]
 
 
 def print_kinds(theirs: Squares, ours: Squares, trees: NDArray[np.float64]) -> None:
@@ -129,8 +127,7 @@ def print_kinds(theirs: Squares, ours: Squares, trees: NDArray[np.float64]) -> N
         "evidently open": trees < EVIDENTLY_OPEN,
         "mixed": (trees >= EVIDENTLY_OPEN) & (trees <= EVIDENTLY_TREE),
     }
-    print("| squares | all | both forest | both deforested | deforested by them only | by us only |")
-    print("|---|---|---|---|---|---|")
+    print(head(["squares", "all", "both forest", "both deforested", "deforested by them only", "by us only"]))
     for name, kind in kinds.items():
         counts = [
             kind,
@@ -139,7 +136,7 @@ def print_kinds(theirs: Squares, ours: Squares, trees: NDArray[np.float64]) -> N
             kind & theirs & ~ours,
             kind & ~theirs & ours,
         ]
-        print(f"| {name} | " + " | ".join(str(int(count.sum())) for count in counts) + " |")
+        print(row([name, *(int(count.sum()) for count in counts)]))
 
 
 def side_by_side(

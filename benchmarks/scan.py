@@ -11,7 +11,6 @@ squares and polygons included; it prints time and peak memory. It takes 4 GB of 
 """
 
 import argparse
-import json
 import os
 import subprocess
 import sys
@@ -217,11 +216,6 @@ def end_to_end(folder: Path, cores: int) -> None:
             output = folder / f"{label}-{count}"
             command = scan_command(model, scene, output, "--vector", "none", *options)
             _, seconds, taken = run(command, count)
-            summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
-            print(
-                f"end to end: ours, {label}, {count} cores: file to class raster "
-                f"{SIDE * SIDE / 1e6 / summary['classify_seconds']:.1f} megapixels a second"
-            )
             print(
                 f"end to end: ours, {label}, {count} cores: {SIDE * SIDE / 1e6 / seconds:.1f} megapixels a "
                 f"second, start of the command and overlay included; {taken}",

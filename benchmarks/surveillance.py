@@ -25,6 +25,7 @@ from wnn2hdl.encode import high_bits
 from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels
 from wnn2hdl.evaluation.classifiers import PictureClassifier, model_classifier
 from wnn2hdl.evaluation.measures import ious
+from wnn2hdl.markdown import head, row
 from wnn2hdl.training.bitselect import LUTS
 from wnn2hdl.training.budget import train_under_budget
 from wnn2hdl.training.crossval import FOLDS
@@ -72,12 +73,11 @@ def main() -> None:
     print(
         f"{len(dataset)} images, {FOLDS} folds, {given.pixels} training pixels an image, seed {given.seed}\n"
     )
-    print("| classifier | pixels right | IoU | squares right | IoU | pixels of squares right | IoU |")
-    print("|---|---|---|---|---|---|---|")
+    measures = ["pixels right", "IoU", "squares right", "IoU", "pixels of squares right", "IoU"]
+    print(head(["classifier", *measures]))
     for name, trainers in rivals(given.pixels, given.mappings, given.seed).items():
         results = [cross_validated(dataset, trainer, given.seed) for trainer in trainers]
-        cells = (f"{figure:.4f}" for figure in np.mean(results, axis=0))
-        print(f"| {name} | {' | '.join(cells)} |", flush=True)
+        print(row([name, *np.mean(results, axis=0).tolist()]), flush=True)
 
 
 def rivals(pixels: int, mappings: int, seed: int) -> dict[str, list[Trainer]]:
@@ -127,8 +127,8 @@ def cross_validated(dataset: Dataset, trainer: Trainer, seed: int) -> list[float
         squares = Squares(SIDE, SHARE, seed)
         tests = dataset.subset(held_out)
         pairs = (tests, None), (majority_labels(tests, SIDE), squares), (tests, squares)
-        for row, (labelled, voting) in enumerate(pairs):
-            confusions[row] += evaluate(classifier, labelled, silent, voting).confusion.sum(axis=0)
+        for place, (labelled, voting) in enumerate(pairs):
+            confusions[place] += evaluate(classifier, labelled, silent, voting).confusion.sum(axis=0)
     right = np.trace(confusions, axis1=1, axis2=2) / confusions.sum(axis=(1, 2))
     return np.stack([right, ious(confusions)[:, 1]], axis=1).ravel().tolist()
 

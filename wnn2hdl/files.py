@@ -5,12 +5,23 @@ import math
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
+
+from filelock import FileLock, Timeout
 
 from wnn2hdl.errors import InputError, ModelFileError
+
+LOCK_FILE = ".lock"
+"""In a folder that a process writes into; see `output_folder`."""
+
+PARTIAL = ".part"
+"""The end of the hidden names that files have until they are whole."""
+
+_NAME = 50
+"""Letters of a file's name that its hidden name has."""
 
 
 def write_text(path: Path, text: str) -> None:
@@ -20,72 +31,58 @@ def write_text(path: Path, text: str) -> None:
         InputError: the folder does not exist or cannot be written, it has no room, or a folder has the
             file's name; or the text is none: what came from a name that is no UTF-8 cannot be written.
     """
-    try:
-        content = text.encode()
-    except UnicodeEncodeError as error:
-        wrong = ascii(error.object[error.start : error.end])
-        raise InputError(
-            "cannot write this as UTF-8", value=f"{wrong} in {path}", hint="rename what has it in its name"
-        ) from error
-    write_bytes(path, content)
+    write_bytes(path, _encoded(text, path))
 
 
 def write_bytes(path: Path, content: bytes) -> None:
     """As `write_text`, for bytes."""
     try:
-        _write(path, content)
+        with _replacing(path) as stream:
+            stream.write(content)
     except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def write_lines(path: Path, lines: Iterable[str]) -> None:
+    """As `write_text`, for lines with their ends that are better not held all at once."""
+    try:
+        with _replacing(path) as stream:
+            stream.writelines(_encoded(line, path) for line in lines)
+    except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def _encoded(text: str, path: Path) -> bytes:
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        wrong = ascii(error.object[error.start : error.end])
         raise InputError(
-            "cannot write",
-            value=f"{path} ({error.strerror})",
-            hint="choose a folder you may write to, with room in it",
+            "cannot write this as UTF-8", value=f"{wrong} in {path}", hint="rename what has it in its name"
         ) from error
 
 
-def _write(path: Path, content: bytes) -> None:
-    # Not by `tempfile`, whose files are for their owner's eyes only, whatever the umask says.
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+@contextmanager
+def _replacing(path: Path) -> Iterator[BinaryIO]:
+    """A new file that takes the place of another when all went well."""
+    # Not by `tempfile`, whose files are for their owner's eyes only, whatever the umask says. A file system's
+    # names end at 255 bytes, and a name that fits is to fit with what is added, too.
+    temporary = path.with_name(f".{path.name[:_NAME]}.{secrets.token_hex(4)}{PARTIAL}")
     try:
         with temporary.open("xb") as stream:
-            stream.write(content)
+            yield stream
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
 
 
-def open_alone(path: Path, what: str, flags: int = 0) -> int:
-    """Open a file to read and write that no other process may have open like this; made if it is missing.
-
-    Args:
-        path: the file.
-        what: whose it is, for the errors: "scan".
-        flags: as of `os.open`, besides those for reading and writing.
-
-    Returns:
-        the file's number; closing it lets others in.
-
-    Raises:
-        InputError: the file cannot be opened, another process has it open, or the system has no such locks.
-    """
-    try:
-        import fcntl  # not there on Windows, where all else here works
-    except ImportError as error:
-        raise InputError(
-            f"this system cannot keep a {what} to one process", hint="run it on Linux or macOS, or in WSL"
-        ) from error
-    try:
-        file = os.open(path, os.O_RDWR | os.O_CREAT | flags, 0o666)
-    except OSError as error:
-        raise InputError(f"cannot write the {what}", value=f"{path} ({error.strerror})") from error
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        os.close(file)
-        raise InputError(
-            f"another {what} is writing to the same folder", value=path.parent, hint="choose another one"
-        ) from error
-    return file
+def _unwritable(path: Path, error: OSError) -> InputError:
+    return InputError(
+        "cannot write",
+        value=f"{path} ({error.strerror})",
+        hint="choose a folder you may write to, with room in it",
+    )
 
 
 def require_file(path: Path, what: str) -> None:
@@ -129,12 +126,40 @@ def make_folder(path: Path) -> None:
 
 
 @contextmanager
-def made_folder(path: Path) -> Iterator[None]:
-    """As `make_folder`; a folder that is new goes again if the block fails and leaves nothing in it."""
+def output_folder(path: Path, what: str) -> Iterator[None]:
+    """A folder that no other process writes into meanwhile; it is made if it is missing.
+
+    The system drops the lock of a process that ends, however it ends, so that no lock outlives its process;
+    what a killed one left under a hidden name, here or one folder below, is removed. A folder that is new
+    goes again if the block fails and leaves nothing in it.
+
+    Args:
+        path: the folder.
+        what: what writes into it, for the error: "scan".
+
+    Raises:
+        InputError: the folder cannot be made or written, or another process has it.
+    """
     new = not path.exists()
     make_folder(path)
+    lock = FileLock(path / LOCK_FILE, timeout=0)
     try:
-        yield
+        with lock:
+            for left in (*path.glob(f".*{PARTIAL}"), *path.glob(f"*/.*{PARTIAL}")):
+                if left.parent == path or not (left.parent / LOCK_FILE).exists():
+                    left.unlink(missing_ok=True)
+            try:
+                yield
+            finally:
+                # Before the lock is given back, or another process might hold the file that goes.
+                with suppress(OSError):
+                    (path / LOCK_FILE).unlink()
+    except Timeout as error:
+        raise InputError(
+            f"another process is writing into the folder of this {what}",
+            value=path,
+            hint="wait until it ends, or choose another folder",
+        ) from error
     except BaseException:
         if new:
             with suppress(OSError):

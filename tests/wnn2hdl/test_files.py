@@ -1,6 +1,9 @@
 import os
 import resource
+import signal
+import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -133,27 +136,57 @@ def test_a_number_too_long_for_python_gets_one_line(tmp_path: Path) -> None:
         files.read_json(path, "a model")
 
 
-def test_a_file_is_open_in_one_place_at_a_time(tmp_path: Path) -> None:
-    path = tmp_path / "journal"
-    first = files.open_alone(path, "scan")
-    with pytest.raises(InputError, match=f"another scan is writing to the same folder: {tmp_path}"):
-        files.open_alone(path, "scan")
-    os.close(first)
-    os.close(files.open_alone(path, "scan"))
-    with pytest.raises(InputError, match=r"cannot write the scan: .*No such file"):
-        files.open_alone(tmp_path / "none" / "journal", "scan")
+def test_a_folder_is_written_into_by_one_process_at_a_time(tmp_path: Path) -> None:
+    with (
+        files.output_folder(tmp_path / "out", "scan"),
+        pytest.raises(
+            InputError, match=r"another process is writing into the folder of this sweep: .*out; wait"
+        ),
+        files.output_folder(tmp_path / "out", "sweep"),
+    ):
+        raise AssertionError
+    with files.output_folder(tmp_path / "out", "scan"):
+        assert [path.name for path in (tmp_path / "out").iterdir()] == [files.LOCK_FILE]
 
 
-def test_a_system_without_locks_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "fcntl", None)
-    with pytest.raises(InputError, match="this system cannot keep a scan to one process; run it on Linux"):
-        files.open_alone(tmp_path / "journal", "scan")
-    assert not list(tmp_path.iterdir())
+def test_the_lock_of_a_killed_process_is_none_and_what_it_left_goes(tmp_path: Path) -> None:
+    program = (
+        "import os, signal, sys; from pathlib import Path; from wnn2hdl.files import output_folder\n"
+        "with output_folder(Path(sys.argv[1]), 'scan'): os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    killed = subprocess.run([sys.executable, "-c", program, tmp_path], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    (tmp_path / ".summary.json.x1.part").touch()
+    (tmp_path / "mine.part").touch()
+    assert (tmp_path / files.LOCK_FILE).exists()
+    with files.output_folder(tmp_path, "scan"):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.part"]
+
+
+def test_lines_are_written_all_or_not_at_all(tmp_path: Path) -> None:
+    def cut_short() -> Iterator[str]:
+        yield "a\n"
+        raise KeyboardInterrupt
+
+    files.write_lines(tmp_path / "x.txt", ["a\n", "é\n"])
+    with pytest.raises(KeyboardInterrupt):
+        files.write_lines(tmp_path / "x.txt", cut_short())
+    assert (tmp_path / "x.txt").read_text(encoding="utf-8") == "a\né\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["x.txt"]
+    with pytest.raises(InputError, match=r"cannot write: .*No such file"):
+        files.write_lines(tmp_path / "none" / "x.txt", [])
+
+
+def test_a_name_that_fits_the_file_system_can_be_written(tmp_path: Path) -> None:
+    path = tmp_path / ("a" * 255)
+    files.write_text(path, "x")
+    assert path.read_text() == "x"
 
 
 def test_a_new_folder_goes_again_if_nothing_came_of_it(tmp_path: Path) -> None:
     def fail(folder: Path, *names: str) -> None:
-        with files.made_folder(folder):
+        with files.output_folder(folder, "scan"):
             for name in names:
                 (folder / name).touch()
             raise InputError("bad input")

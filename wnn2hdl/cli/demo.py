@@ -11,6 +11,7 @@ from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.errors import CheckError
+from wnn2hdl.files import output_folder
 
 
 @app.command("demo")
@@ -29,7 +30,7 @@ def demo_command(output: Path, seed: int, as_json: bool) -> None:
     from wnn2hdl.apps.demo import REFERENCE, SMALLEST, run_demo
     from wnn2hdl.apps.navigation.summary import summary
 
-    with progress() as report:
+    with output_folder(output, "demo"), progress() as report:
         demo = run_demo(output, seed, report)
     flight = summary(demo.flight) if demo.flight else None
     data = {

@@ -17,7 +17,7 @@ from wnn2hdl.cli.options import file, folder, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.errors import InputError
-from wnn2hdl.files import made_folder
+from wnn2hdl.files import output_folder
 from wnn2hdl.raster import Reading
 
 if TYPE_CHECKING:
@@ -193,7 +193,7 @@ def locate_command(
             "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, hint="give both"
         )
     known = Learned.read(calibration_file) if calibration_file else None
-    with made_folder(output), progress() as report:
+    with output_folder(output, "flight"), progress() as report:
         if map_file and frames and poses_file:
             scored, calibrating = _divided(_poses(poses_file), calibrate, calibrate_frames)
             scored = _unseen(scored, known.poses) if known else scored

@@ -1,5 +1,6 @@
 """`scan`: maps of deforestation from imagery of any size."""
 
+import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any, get_args
 import click
 
 from wnn2hdl.apps.deforestation.classify import Method
+from wnn2hdl.apps.deforestation.cleanup import MinimumSize
 from wnn2hdl.apps.deforestation.distributed import run_distributed
 from wnn2hdl.apps.deforestation.local import run_locally
 from wnn2hdl.apps.deforestation.options import ScanOptions, Vector
@@ -16,7 +18,7 @@ from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, seed_option, share_option
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.pictures import reading_options
+from wnn2hdl.cli.pictures import BandsType, ScaleType, reading_options
 from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
@@ -51,6 +53,10 @@ from wnn2hdl.tools import cores
     "--mask", type=file, help="A raster of INPUT's size; where it is not 0, INPUT is left out (clouds)."
 )
 @click.option("--before", type=file, help="The same area at an earlier date: maps what was cleared since.")
+@click.option("--before-bands", type=BandsType(), help="Bands of --before.  [default: those of --bands]")
+@click.option(
+    "--before-scale", type=ScaleType(), help="Values of --before that become 0 and 255.  [default: --scale]"
+)
 @click.option("--before-mask", type=file, help="As --mask, of the picture of --before.")
 @click.option(
     "--vector",
@@ -75,6 +81,8 @@ def scan_command(
     reading: Reading,
     mask: Path | None,
     before: Path | None,
+    before_bands: tuple[int, ...] | None,
+    before_scale: tuple[float, float] | None,
     before_mask: Path | None,
     vector: Vector,
     jobs: int | None,
@@ -94,30 +102,37 @@ def scan_command(
     """
     if minimum_area is not None and minimum_pixels is not None:
         raise InputError("--minimum-area and --minimum-pixels say the same", hint="give one of them")
-    if before_mask and not before:
-        raise InputError("--before-mask is the mask of --before", value=before_mask, hint="give both")
+    if not before and (before_bands or before_scale or before_mask):
+        raise InputError(
+            "--before-bands, --before-scale and --before-mask say how --before is read", hint="give --before"
+        )
     if scheduler and jobs:
         raise InputError("--jobs is for this machine, --scheduler for others", hint="give one of them")
     options = ScanOptions(
         replace(reading, mask=mask),
         Method(square, share, seed, smooth),
-        minimum_pixels,
-        minimum_area,
+        MinimumSize(minimum_pixels or 0, minimum_area or 0) if minimum_pixels or minimum_area else None,
         vector,
     )
     run = partial(run_distributed, scheduler) if scheduler else partial(run_locally, jobs or cores())
     with progress() as report:
-        summary = Scanner.open(model, options, run, report).scan(picture, output, before, before_mask)
+        started = time.perf_counter()
+        earlier = Reading(before_bands, before_scale, mask=before_mask)
+        summary = Scanner.open(model, options, run, report).scan(picture, output, before, earlier)
+        seconds = time.perf_counter() - started
     for warning in summary["warnings"]:
         say(f"wnn2hdl: warning: {warning}", error=True)
-    emit(summary | {"output": str(output)}, _text(summary, output), as_json=as_json)
+    # Not in the summary's file: the same scan is to write the same bytes.
+    speed = {"seconds": seconds, "megapixels_per_second": summary["pixels"] / seconds / 1e6}
+    emit(summary | speed | {"output": str(output)}, _text(summary | speed, output), as_json=as_json)
 
 
 def _text(summary: dict[str, Any], output: Path) -> str:
     lines = [_line(summary["input"], summary["deforested"], "deforested")]
     if "change" in summary:
         lines.append(_line(f"since {summary['before']}", summary["change"]["newly_cleared"], "newly cleared"))
-    left_out = 1 - summary["classified_pixels"] / summary["pixels"]
+    shared = summary["overlap"]["pixels"] if "overlap" in summary else 0
+    left_out = 1 - (summary["classified_pixels"] + shared) / summary["pixels"]
     if left_out:
         lines.append(f"{left_out:.2%} of the pixels left out: no data, or masked")
     known = summary["coverage"]["share"]

@@ -7,6 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.errors import InputError
 from wnn2hdl.raster.gdal import Georeference, gdal, open_raster
 
 NODATA = 255
@@ -16,6 +17,10 @@ TILE = 512
 """Side of a tile."""
 
 _SMALLEST_OVERVIEW = 256
+
+
+def _incomplete(path: Path) -> InputError:
+    return InputError("the raster was not written whole", value=path, hint="the disk may be full")
 
 
 class ClassWriter:
@@ -31,7 +36,7 @@ class ClassWriter:
         colours: red, green, blue of each class, 0 to 255.
 
     Raises:
-        InputError: the file cannot be written.
+        InputError: the file cannot be written, or when it is closed, not all of it was.
         ExtraMissingError: rasterio is not installed.
     """
 
@@ -46,6 +51,7 @@ class ClassWriter:
         self._path = path
         self._size = (height, width)
         self._row = 0
+        self._valid = 0
         self._waiting = np.empty((0, width), dtype=np.uint8)
         with gdal(path) as rasterio:
             place = georeference.transform
@@ -72,6 +78,7 @@ class ClassWriter:
 
     def write(self, rows: NDArray[np.uint8]) -> None:
         """Add rows, uint8 ``[any, width]``, below those already written."""
+        self._valid += int(np.count_nonzero(rows != NODATA))
         self._waiting = np.concatenate([self._waiting, rows])
         # Whole rows of tiles only: a compressed tile that is written twice leaves a hole in the file.
         ready = len(self._waiting)
@@ -94,9 +101,21 @@ class ClassWriter:
         try:
             with gdal(self._path):
                 self._target.close()
-        finally:
-            if kind is not None:
-                self._path.unlink(missing_ok=True)
+            if kind is None:
+                self._check()
+        except BaseException:
+            self._path.unlink(missing_ok=True)
+            raise
+        if kind is not None:
+            self._path.unlink(missing_ok=True)
+
+    def _check(self) -> None:
+        """Refuse a file that lacks some of what was written: closing one on a full disk raises nothing."""
+        with gdal(self._path) as rasterio, open_raster(rasterio, self._path) as written:
+            windows = (window for _, window in written.block_windows(1))
+            valid = sum(np.count_nonzero(written.read(1, window=window) != NODATA) for window in windows)
+        if valid != self._valid:
+            raise _incomplete(self._path)
 
 
 def add_overviews(path: Path) -> None:
@@ -112,3 +131,6 @@ def add_overviews(path: Path) -> None:
         while max(target.shape) // factors[-1] > _SMALLEST_OVERVIEW:
             factors.append(2 * factors[-1])
         target.build_overviews(factors, rasterio.enums.Resampling.mode)
+    with gdal(path) as rasterio, open_raster(rasterio, path) as written:
+        if len(written.overviews(1)) != len(factors):
+            raise _incomplete(path)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from wnn2hdl.errors import InputError, extra_needed
-from wnn2hdl.files import make_folder, write_bytes, write_text
+from wnn2hdl.files import make_folder, output_folder, write_bytes, write_text
 from wnn2hdl.samples.country import GROUND_SAMPLE_DISTANCE_M, paint
 from wnn2hdl.samples.georeference import EPSG, NORTH, WEST, Grid
 from wnn2hdl.samples.plane import Window
@@ -182,19 +182,20 @@ def write_flight(folder: Path, flight: Flight) -> Iterator[Path]:
         ExtraMissingError: rasterio or pyproj is not installed.
         InputError: the folder cannot be written.
     """
-    make_folder(folder / "frames")
-    write_bytes(folder / "map.tif", _geotiff(flight))
-    yield folder / "map.tif"
-    write_text(folder / "poses.csv", _pose_table(flight.poses))
-    yield folder / "poses.csv"
-    write_text(folder / "camera.toml", _camera_table(flight.camera))
-    yield folder / "camera.toml"
-    for pose, picture in flight.frames():
-        stream = io.BytesIO()
-        Image.fromarray(picture).save(stream, "JPEG", quality=92)
-        path = folder / "frames" / pose.frame
-        write_bytes(path, stream.getvalue())
-        yield path
+    with output_folder(folder, "generated flight"):
+        make_folder(folder / "frames")
+        write_bytes(folder / "map.tif", _geotiff(flight))
+        yield folder / "map.tif"
+        write_text(folder / "poses.csv", _pose_table(flight.poses))
+        yield folder / "poses.csv"
+        write_text(folder / "camera.toml", _camera_table(flight.camera))
+        yield folder / "camera.toml"
+        for pose, picture in flight.frames():
+            stream = io.BytesIO()
+            Image.fromarray(picture).save(stream, "JPEG", quality=92)
+            path = folder / "frames" / pose.frame
+            write_bytes(path, stream.getvalue())
+            yield path
 
 
 def _fly(

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wnn2hdl.files import make_folder, write_json
+from wnn2hdl.files import make_folder, output_folder, write_json
 from wnn2hdl.images import Palette, write_png
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.samples import CLASSES, landscape
@@ -30,12 +30,13 @@ def write_landscapes(folder: Path, count: int, side: int, *, seed: int, progress
         InputError: a side without pixels, a negative seed, or a folder that cannot be written.
     """
     palette = Palette.of(CLASSES)
-    for name in (IMAGES, MASKS, KINDS):
-        make_folder(folder / name)
-    for i in reported(range(count), "landscapes", count, progress):
-        scene = landscape(side, side, seed + i)
-        name = f"landscape-{seed + i:05d}.png"
-        write_png(folder / IMAGES / name, scene.image)
-        write_png(folder / MASKS / name, scene.deforested.astype(np.uint8) * 255)
-        write_png(folder / KINDS / name, palette.paint(scene.labels))
-    write_json(folder / PALETTE, palette.to_json())
+    with output_folder(folder, "set of landscapes"):
+        for name in (IMAGES, MASKS, KINDS):
+            make_folder(folder / name)
+        for i in reported(range(count), "landscapes", count, progress):
+            scene = landscape(side, side, seed + i)
+            name = f"landscape-{seed + i:05d}.png"
+            write_png(folder / IMAGES / name, scene.image)
+            write_png(folder / MASKS / name, scene.deforested.astype(np.uint8) * 255)
+            write_png(folder / KINDS / name, palette.paint(scene.labels))
+        write_json(folder / PALETTE, palette.to_json())

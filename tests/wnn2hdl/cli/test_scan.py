@@ -137,3 +137,20 @@ def test_a_killed_scan_goes_on_and_ends_the_same(scan: Run, model: Path, tmp_pat
     assert scan(*words, "-o", tmp_path / "at-once").status == 0
     resumed, at_once = (tmp_path / x / "classes.tif" for x in ("out", "at-once"))
     assert resumed.read_bytes() == at_once.read_bytes()
+
+
+def test_ground_that_is_counted_once_is_not_left_out(
+    scan: Run, model: Path, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    (tmp_path / "dates").mkdir()
+    place = {"crs": "EPSG:32720", "transform": rasterio.Affine(10, 0, 5e5, 0, -10, 9e6)}
+    size = {"height": pixels.shape[0], "width": pixels.shape[1], "count": 3, "dtype": "uint8"}
+    for name in ("2023", "2024"):
+        with rasterio.open(
+            tmp_path / "dates" / f"{name}.tif", "w", photometric="rgb", **size, **place
+        ) as target:
+            target.write(np.moveaxis(pixels, 2, 0))
+    done = scan(model, tmp_path / "dates", "-o", tmp_path / "out")
+    assert done.status == 0, done.stderr
+    assert "1 of 2 pictures share ground with later ones" in done.stderr
+    assert "left out" not in done.stdout

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.class_raster import STRIP_PIXELS, open_classes, read_strip, strip_rows
-from wnn2hdl.apps.deforestation.ellipsoid import PixelAreas
+from wnn2hdl.apps.deforestation.ellipsoid import SQUARE_METRES, PixelAreas
+from wnn2hdl.apps.deforestation.overlap import shown_by
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster import Georeference
-
-SQUARE_METRES = 10_000
-"""A hectare."""
 
 
 @dataclass(frozen=True)
@@ -31,27 +29,29 @@ class ClassArea:
     hectares: float | None
 
 
-def class_areas(raster: Path, names: Sequence[str]) -> tuple[ClassArea, ...]:
+def class_areas(raster: Path, names: Sequence[str], elsewhere: Sequence[Path] = ()) -> tuple[ClassArea, ...]:
     """Pixels and area of each class, those without data left out; a strip of rows is in memory at a time.
 
     Args:
         raster: a class raster.
         names: class names by index.
+        elsewhere: class rasters of ground that is not counted here, because it is counted there.
 
     Raises:
         ExtraMissingError: the extra ``geo`` is not installed.
         InputError: the file cannot be read, or holds an index without a name.
     """
     pixels, square_metres = np.zeros(256, dtype=np.int64), np.zeros(256)
-    with open_classes(raster) as dataset:
+    with open_classes(raster) as dataset, shown_by(elsewhere, dataset) as shown:
         place = Georeference.of(dataset)
         areas = PixelAreas(place, *dataset.shape) if place.located else None
         for rows in strip_rows(dataset, STRIP_PIXELS):
             strip = read_strip(dataset, rows)
-            present = strip.classes[strip.valid]
+            counted = strip.valid & ~shown(*rows)
+            present = strip.classes[counted]
             pixels += np.bincount(present, minlength=256)
             if areas:
-                square_metres += np.bincount(present, areas.rows(*rows)[strip.valid], minlength=256)
+                square_metres += np.bincount(present, areas.rows(*rows)[counted], minlength=256)
         georeferenced = areas is not None
     require_names(pixels, names, raster)
     return tuple(

@@ -8,7 +8,7 @@ import numpy as np
 
 from wnn2hdl.apps.deforestation.areas import ClassArea
 from wnn2hdl.apps.deforestation.class_raster import STRIP_PIXELS, open_classes, read_strip, strip_rows
-from wnn2hdl.apps.deforestation.cleanup import sieve_in_place
+from wnn2hdl.apps.deforestation.cleanup import MinimumSize, sieve_in_place
 from wnn2hdl.apps.deforestation.polygons import write_polygons
 from wnn2hdl.errors import InputError
 from wnn2hdl.progress import Progress
@@ -39,7 +39,7 @@ def write_change(
     before: Path,
     after: Path,
     cleared: Sequence[int],
-    minimum_pixels: int | None,
+    minimum: MinimumSize | None,
     output_raster: Path,
     output_polygons: Path,
     progress: Progress,
@@ -53,8 +53,8 @@ def write_change(
         before: the class raster of the earlier date.
         after: that of the later one, of the same grid.
         cleared: indices of the classes that count as cleared.
-        minimum_pixels: smaller regions of the raster of changes take what surrounds them, see `sieve_raster`;
-            None leaves them.
+        minimum: smaller regions of the raster of changes take what surrounds them, see `sieve_raster`; None
+            leaves them.
         output_raster: a GeoTIFF of the indices of `CHANGES`; nodata where either has none.
         output_polygons: GeoJSON or GeoPackage of what is newly cleared and regrown, by `write_polygons`.
         progress: told of each strip.
@@ -87,7 +87,7 @@ def write_change(
                 compared += int(both.sum())
                 written.write(changed)
                 progress("comparing dates", index + 1, len(strips))
-    if minimum_pixels is not None:
-        sieve_in_place(output_raster, minimum_pixels, progress)
+    if minimum is not None:
+        sieve_in_place(output_raster, minimum, progress)
     newly, regrown = write_polygons(output_raster, output_polygons, CHANGES, progress)
     return Change(compared, newly, regrown)

@@ -80,10 +80,17 @@ def staged(path: Path) -> Iterator[Path]:
     """Where to write a file that is to be ``path``: it is moved there when all went well.
 
     Raises:
-        InputError: the folder cannot be made or written.
+        InputError: the folder cannot be made or written, or it has no room.
     """
     make_folder(path.parent)
-    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder:
-        unfinished = Path(folder) / path.name
-        yield unfinished
-        unfinished.replace(path)
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder:
+            unfinished = Path(folder) / path.name
+            yield unfinished
+            unfinished.replace(path)
+    except OSError as error:
+        raise InputError(
+            "cannot write",
+            value=f"{path} ({error.strerror})",
+            hint="choose a folder you may write to, with room in it",
+        ) from error

@@ -1,5 +1,6 @@
 """Cleaning class maps: majority of the neighbourhood, and a minimum mapping unit."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -13,6 +14,7 @@ from wnn2hdl.apps.deforestation.class_raster import (
     read_strip,
     strip_rows,
 )
+from wnn2hdl.apps.deforestation.ellipsoid import SQUARE_METRES, PixelAreas
 from wnn2hdl.apps.deforestation.regions import NO_REGION, Regions, find_regions
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import NODATA, ClassWriter, Georeference
@@ -50,33 +52,52 @@ def despeckle(classes: NDArray[np.uint8], valid: NDArray[np.bool_], radius: int)
     return winner
 
 
-def sieve_in_place(raster: Path, minimum_pixels: int, progress: Progress) -> None:
+@dataclass(frozen=True)
+class MinimumSize:
+    """The minimum mapping unit: regions below either limit are too small.
+
+    Attributes:
+        pixels: of a region.
+        hectares: of a region, on the ellipsoid: the sum of the areas of its own pixels, which may be a third
+            of those at the equator.
+    """
+
+    pixels: int = 0
+    hectares: float = 0
+
+    def below(self, regions: Regions) -> NDArray[np.bool_]:
+        """Which regions are too small: bool ``[regions]``."""
+        small = regions.pixels < self.pixels
+        return small | (regions.square_metres < self.hectares * SQUARE_METRES) if self.hectares else small
+
+
+def sieve_in_place(raster: Path, minimum: MinimumSize, progress: Progress) -> None:
     """As `sieve_raster`, the result instead of the raster."""
     sieved = raster.with_name(f"sieved-{raster.name}")
-    sieve_raster(raster, sieved, minimum_pixels, progress)
+    sieve_raster(raster, sieved, minimum, progress)
     sieved.replace(raster)
 
 
 def sieve_raster(
     source: Path,
     output: Path,
-    minimum_pixels: int,
+    minimum: MinimumSize,
     progress: Progress,
     *,
     strip_pixels: int = STRIP_PIXELS,
 ) -> int:
-    """Dissolve regions of fewer than ``minimum_pixels`` pixels into what surrounds them.
+    """Dissolve regions below a minimum size into what surrounds them.
 
     A region is a set of valid pixels of one class connected by their sides, over the whole raster. A small
     one takes the class of the large regions along most of its border (the lowest class if several share the
     most); one that touches small regions only, or nothing, stays. So does GDAL's sieve for a speck in a
     field; it takes the largest neighbour instead of the longest border, and needs the whole raster in
-    memory, which this does not: memory holds one strip, and about 30 bytes for each region.
+    memory, which this does not: memory holds one strip, and about 40 bytes for each region.
 
     Args:
         source: a class raster.
         output: where to write the result, with the same georeference and colours.
-        minimum_pixels: the minimum mapping unit.
+        minimum: the minimum mapping unit; one in hectares needs a raster with a georeference.
         progress: told of each strip, three times over.
         strip_pixels: how many pixels are worked on at a time; the result does not depend on it.
 
@@ -89,13 +110,16 @@ def sieve_raster(
     """
     with open_classes(source) as dataset:
         strips = strip_rows(dataset, strip_pixels)
-        regions = find_regions(dataset, strips, lambda done: progress("finding regions", done, len(strips)))
-        borders = _Borders(regions, minimum_pixels)
+        place = Georeference.of(dataset)
+        areas = PixelAreas(place, *dataset.shape) if minimum.hectares else None
+        regions = find_regions(
+            dataset, strips, lambda done: progress("finding regions", done, len(strips)), areas
+        )
+        borders = _Borders(regions, minimum.below(regions))
         for index, rows in enumerate(strips):
             borders.add(regions.label(index, read_strip(dataset, rows)))
             progress("measuring borders", index + 1, len(strips))
         classes = borders.dissolved()
-        place = Georeference.of(dataset)
         with ClassWriter(output, dataset.height, dataset.width, place, colours(dataset)) as written:
             for index, rows in enumerate(strips):
                 strip = read_strip(dataset, rows)
@@ -108,9 +132,9 @@ def sieve_raster(
 class _Borders:
     """How long the border of each small region is with the large regions of each class."""
 
-    def __init__(self, regions: Regions, minimum_pixels: int) -> None:
+    def __init__(self, regions: Regions, small: NDArray[np.bool_]) -> None:
         self._regions = regions
-        self._small = np.flatnonzero(regions.pixels < minimum_pixels)
+        self._small = np.flatnonzero(small)
         # One more entry than regions: NO_REGION is the last one's index, and belongs to no small region.
         self._place = np.full(len(regions.pixels) + 1, -1, dtype=np.int32)
         self._place[self._small] = np.arange(len(self._small), dtype=np.int32)

@@ -11,6 +11,9 @@ from wnn2hdl.raster import Georeference
 if TYPE_CHECKING:
     from pyproj import Transformer
 
+SQUARE_METRES = 10_000
+"""Of a hectare."""
+
 _SEMI_MAJOR = 6378137.0
 _FLATTENING = 1 / 298.257223563
 _ECCENTRICITY = (_FLATTENING * (2 - _FLATTENING)) ** 0.5

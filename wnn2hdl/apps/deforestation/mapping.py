@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from wnn2hdl.apps.deforestation.classify import WindowResult, unpack
-from wnn2hdl.apps.deforestation.journal import Journal
+from wnn2hdl.apps.deforestation.finished import FinishedWindows
 from wnn2hdl.apps.deforestation.task import Task
 from wnn2hdl.apps.deforestation.windows import Window, cut
 from wnn2hdl.images import Palette, Source
@@ -43,7 +43,7 @@ class Coverage:
 def write_classes(
     task: Task,
     source: Source,
-    kept: Journal,
+    kept: FinishedWindows,
     run: Runner,
     output: Path,
     palette: Palette,
@@ -85,5 +85,5 @@ def write_classes(
         return Coverage(kept.valid, kept.covered)
 
 
-def _missing(bands: Iterable[Iterable[Window]], kept: Journal) -> list[Window]:
+def _missing(bands: Iterable[Iterable[Window]], kept: FinishedWindows) -> list[Window]:
     return [window for band in bands for window in band if window.index not in kept]

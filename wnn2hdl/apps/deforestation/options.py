@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from wnn2hdl.apps.deforestation.classify import Method
+from wnn2hdl.apps.deforestation.cleanup import MinimumSize
 from wnn2hdl.raster import Reading
 
 Vector = Literal["geojson", "gpkg", "none"]
@@ -16,15 +17,13 @@ class ScanOptions:
     Attributes:
         reading: how pictures are read.
         method: squares and smoothing.
-        minimum_pixels: regions of fewer pixels are dissolved into their surroundings; None for no such limit.
-        minimum_hectares: the same as an area; at most one of the two is given.
+        minimum: smaller regions are dissolved into their surroundings; None for no such limit.
         vector: the format of polygons.
     """
 
     reading: Reading = field(default_factory=Reading)
     method: Method = field(default_factory=Method)
-    minimum_pixels: int | None = None
-    minimum_hectares: float | None = None
+    minimum: MinimumSize | None = None
     vector: Vector = "geojson"
 
     def to_json(self) -> dict[str, Any]:
@@ -36,7 +35,7 @@ class ScanOptions:
             "alpha": reading.alpha,
             "mask": str(reading.mask) if reading.mask else None,
             **asdict(self.method),
-            "minimum_pixels": self.minimum_pixels,
-            "minimum_hectares": self.minimum_hectares,
+            "minimum_pixels": (self.minimum and self.minimum.pixels) or None,
+            "minimum_hectares": (self.minimum and self.minimum.hectares) or None,
             "vector": self.vector,
         }

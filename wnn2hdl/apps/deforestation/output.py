@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Container, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from wnn2hdl.errors import InputError
@@ -19,6 +19,9 @@ BEFORE = "before"
 
 WORK = ".scan"
 """The folder, inside the output's, of what is not finished."""
+
+WINDOWS = "windows"
+"""The journal of finished windows, inside `WORK`."""
 
 _RESULTS = (
     SUMMARY_FILE,
@@ -43,14 +46,20 @@ def require_apart(inputs: Iterable[Path], output: Path) -> None:
 
 
 @contextmanager
-def emptied(folder: Path) -> Iterator[Path]:
-    """A folder for what is not finished; it and all that is in it is removed in the end."""
+def unfinished(output: Path) -> Iterator[Path]:
+    """A new folder for results that are not finished; it and all that is in it is removed in the end.
+
+    `WORK` around it stays if anything else is in it.
+    """
+    folder = output / WORK / "results"
     shutil.rmtree(folder, ignore_errors=True)
     make_folder(folder)
     try:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+        with suppress(OSError):
+            folder.parent.rmdir()
 
 
 def deliver(results: Path, output: Path) -> None:

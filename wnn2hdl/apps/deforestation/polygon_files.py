@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.apps.deforestation.antimeridian import DECIMALS, within_the_world
 from wnn2hdl.apps.deforestation.ellipsoid import to_degrees
 from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.raster import Georeference
 
 if TYPE_CHECKING:
     from rasterio.io import DatasetReader
-
-DECIMALS = 8
-"""Of a degree in GeoJSON: a millimetre."""
 
 LONGEST_EDGE = 128
 """Pixels of a straight edge in GeoJSON: what is straight in the raster's coordinates is bent in degrees."""
@@ -84,11 +82,7 @@ def _features(
     shapely = _shapely()
     polygons = outlines.polygons
     if carry is not None:
-        polygons = shapely.transform(shapely.segmentize(polygons, LONGEST_EDGE), carry)
-    # RFC 7946 wants outer rings anticlockwise.
-    polygons = np.where(
-        shapely.is_ccw(shapely.get_exterior_ring(polygons)), polygons, shapely.reverse(polygons)
-    )
+        polygons = within_the_world(shapely.transform(shapely.segmentize(polygons, LONGEST_EDGE), carry))
     texts = shapely.to_geojson(polygons)
     for text, index, pixels, hectares in zip(
         texts, outlines.classes, outlines.pixels.tolist(), outlines.hectares.tolist(), strict=True
@@ -127,7 +121,7 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
     """
     with extra_needed("geo", "GeoPackage needs pyogrio"):
         from pyogrio import raw, set_gdal_config_options
-        from pyogrio.errors import DataSourceError
+        from pyogrio.errors import DataLayerError, DataSourceError, FeatureError
     shapely = _shapely()
     located = Georeference.of(dataset).located
     to_map = _to_map(dataset)
@@ -140,9 +134,9 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
             "area_ha": outlines.hectares,
             "area_px": outlines.pixels,
         }
-        with warnings.catch_warnings():
-            # That there is no coordinate system is known.
-            warnings.filterwarnings("ignore", "'crs' was not provided")
+        # Recorded, since on a full disk some of GDAL's errors come as warnings; that there is no coordinate
+        # system is known.
+        with warnings.catch_warnings(record=True, action="always") as noted:
             try:
                 raw.write(
                     path,
@@ -155,10 +149,11 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
                     crs=dataset.crs.to_wkt() if located else None,
                     append=append,
                 )
-            except DataSourceError as error:
-                raise InputError(
-                    "cannot write the polygons", value=f"{path} ({error})", hint="the disk may be full"
-                ) from error
+            except (DataSourceError, DataLayerError, FeatureError) as error:
+                raise _unwritten(path, error) from error
+        for warning in noted:
+            if issubclass(warning.category, RuntimeWarning):
+                raise _unwritten(path, warning.message)
 
     # An empty table first, so that a raster without regions makes a file too.
     none = np.zeros(0)
@@ -169,6 +164,10 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
         yield write
     finally:
         set_gdal_config_options({"OGR_CURRENT_DATE": None})
+
+
+def _unwritten(path: Path, reason: object) -> InputError:
+    return InputError("cannot write the polygons", value=f"{path} ({reason})", hint="the disk may be full")
 
 
 def _shapely() -> Any:

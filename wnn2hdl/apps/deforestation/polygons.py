@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.apps.deforestation.areas import SQUARE_METRES, ClassArea, require_names
+from wnn2hdl.apps.deforestation.areas import ClassArea, require_names
 from wnn2hdl.apps.deforestation.class_raster import STRIP_PIXELS, open_classes, read_strip, staged, strip_rows
-from wnn2hdl.apps.deforestation.ellipsoid import PixelAreas
+from wnn2hdl.apps.deforestation.ellipsoid import SQUARE_METRES, PixelAreas
 from wnn2hdl.apps.deforestation.polygon_files import WRITERS, Outlines
 from wnn2hdl.apps.deforestation.regions import Regions, find_regions
 from wnn2hdl.errors import InputError
@@ -33,9 +33,11 @@ def write_polygons(
 
     A region is a set of pixels of one class connected by their sides; each becomes one polygon with the
     properties ``class``, ``area_ha`` (the sum of its pixels' areas on the ellipsoid WGS 84) and ``area_px``.
-    GeoJSON is in longitude and latitude (EPSG:4326, as RFC 7946 wants), GeoPackage in the raster's
-    coordinate system. Without a georeference coordinates are pixels, x to the right and y downwards from
-    the top left corner, and ``area_ha`` is null; such a GeoJSON says so in its member ``coordinates``.
+    GeoJSON is as RFC 7946 wants it: longitude from -180 to 180 and latitude (EPSG:4326), a region across the
+    antimeridian cut there into a multipolygon. GeoPackage is in the raster's coordinate system, where nothing
+    is cut, so that polygons lie on the raster. Without a georeference coordinates are pixels, x to the right
+    and y downwards from the top left corner, and ``area_ha`` is null; such a GeoJSON says so in its member
+    ``coordinates``.
 
     Memory grows with the number of regions, about 35 bytes each, and with the outlines of those that reach
     into the strip being worked on or across it; finished ones are written at once.
@@ -65,7 +67,11 @@ def write_polygons(
     pixels, hectares = np.zeros(len(names), dtype=np.int64), np.zeros(len(names))
     with open_classes(raster) as dataset, staged(output) as unfinished:
         strips = strip_rows(dataset, strip_pixels)
-        regions = find_regions(dataset, strips, lambda done: progress("finding regions", done, len(strips)))
+        place = Georeference.of(dataset)
+        areas = PixelAreas(place, *dataset.shape) if place.located else None
+        regions = find_regions(
+            dataset, strips, lambda done: progress("finding regions", done, len(strips)), areas
+        )
         by_class = np.zeros(256, dtype=np.int64)
         np.add.at(by_class, regions.classes, regions.pixels)
         require_names(by_class, names, raster)
@@ -76,9 +82,8 @@ def write_polygons(
                 np.add.at(pixels, outlines.classes, outlines.pixels)
                 np.add.at(hectares, outlines.classes, outlines.hectares)
                 progress("outlining regions", done, len(strips))
-        located = Georeference.of(dataset).located
     return tuple(
-        ClassArea(name, int(pixels[i]), float(hectares[i]) if located else None)
+        ClassArea(name, int(pixels[i]), float(hectares[i]) if areas else None)
         for i, name in enumerate(names)
         if i
     )
@@ -90,17 +95,11 @@ def _outlines(
     """After each strip the regions that are finished, in the order of their numbers."""
     import shapely
 
-    georeference = Georeference.of(dataset)
-    areas = PixelAreas(georeference, *dataset.shape) if georeference.located else None
-    square_metres = np.full(len(regions.pixels), 0.0 if areas else np.nan)
     unfinished: dict[int, list[Any]] = defaultdict(list)
     for index, rows in enumerate(strips):
         strip = read_strip(dataset, rows)
         labels = regions.label(index, strip)
         wanted = strip.valid & (strip.classes != 0)
-        if areas:
-            numbers, place = np.unique(labels[wanted], return_inverse=True)
-            square_metres[numbers] += np.bincount(place, areas.rows(*rows)[wanted], minlength=len(numbers))
         for number, part in zip(*_parts(labels, wanted, rows[0]), strict=True):
             unfinished[number].append(part)
         done = np.array(sorted(n for n in unfinished if regions.last_strip[n] == index), dtype=np.int64)
@@ -109,7 +108,7 @@ def _outlines(
             shapely.normalize(polygons),
             regions.classes[done],
             regions.pixels[done],
-            square_metres[done] / SQUARE_METRES,
+            regions.square_metres[done] / SQUARE_METRES,
         )
 
 

@@ -1,12 +1,14 @@
 """What a scan found, for programs and for people."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from wnn2hdl.apps.deforestation.areas import ClassArea
 from wnn2hdl.apps.deforestation.change import Change
 from wnn2hdl.apps.deforestation.mapping import Coverage
 from wnn2hdl.dataset import cleared_classes
+from wnn2hdl.markdown import MISSING, escaped, table
 
 FAMILIAR_SHARE = 0.9
 """Imagery with a smaller share of pixels whose colours the classifier knows is foreign to it.
@@ -70,18 +72,50 @@ def change_figures(change: Change) -> dict[str, Any]:
     }
 
 
-def total_figures(pictures: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The figures of several pictures' summaries together."""
-    names = [entry["class"] for entry in pictures[0]["classes"]]
-    areas = [
-        ClassArea(
-            name,
-            sum(picture["classes"][index]["pixels"] for picture in pictures),
-            _sum(picture["classes"][index]["hectares"] for picture in pictures),
-        )
-        for index, name in enumerate(names)
-    ]
-    return class_figures(areas)
+@dataclass(frozen=True)
+class Totals:
+    """What several pictures show together.
+
+    Attributes:
+        areas: of each class, ground that several pictures show counted once.
+        pictures_added: all classes of all pictures added up, that ground counted as often as it is shown.
+        sharing: how many pictures share ground with one that comes after them.
+    """
+
+    areas: Sequence[ClassArea]
+    pictures_added: ClassArea
+    sharing: int
+
+    @property
+    def overlap(self) -> ClassArea:
+        """What is left out of the totals, because a later picture shows it as well."""
+        once = summed(self.areas)
+        hectares = None
+        if once.hectares is not None and self.pictures_added.hectares is not None:
+            hectares = self.pictures_added.hectares - once.hectares if self.sharing else 0.0
+        return ClassArea("overlap", self.pictures_added.pixels - once.pixels, hectares)
+
+    def warnings(self, pictures: int) -> list[str]:
+        """What a reader must know of them."""
+        if not self.sharing:
+            return []
+        shared = self.overlap
+        size = f"{shared.pixels:,} pixels" if shared.hectares is None else f"{_area(shared.hectares)} ha"
+        return [
+            f"{self.sharing} of {pictures} pictures share ground with later ones (by name): {size} are "
+            "counted once, as the last picture shows them"
+        ]
+
+
+def overlap_figures(totals: Totals) -> dict[str, Any]:
+    """The ground that several pictures show; pictures without a georeference are taken to lie apart."""
+    shared = totals.overlap
+    return {"pictures": totals.sharing, "pixels": shared.pixels, "hectares": shared.hectares}
+
+
+def summed(areas: Sequence[ClassArea]) -> ClassArea:
+    """The sum of areas under the first one's name; there is one at least."""
+    return ClassArea(areas[0].name, sum(area.pixels for area in areas), _sum(area.hectares for area in areas))
 
 
 def page(summary: Mapping[str, Any]) -> str:
@@ -90,20 +124,20 @@ def page(summary: Mapping[str, Any]) -> str:
     # The total of one class would only repeat it.
     totals = [cleared] if len(cleared["classes"]) != 1 else []
     sections = [
-        f"# Scan of {summary['input']}",
-        "\n".join(f"**Warning:** {warning}." for warning in summary["warnings"]),
+        f"# Scan of {escaped(summary['input'])}",
+        "\n".join(f"**Warning:** {escaped(warning)}." for warning in summary["warnings"]),
         _sentence(summary),
-        _table(
+        table(
             ["class", "pixels", "share", "hectares"],
             (
                 [entry["class"], f"{entry['pixels']:,}", _percent(entry["share"]), _area(entry["hectares"])]
                 for entry in [*summary["classes"], *totals]
             ),
         ),
-        f"Deforested are the classes {', '.join(cleared['classes'])}." if len(summary["classes"]) > 2 else "",
+        _deforested(cleared["classes"]) if len(summary["classes"]) > 2 else "",
     ]
     if "change" in summary:
-        sections += ["## Change", f"Against {summary['before']}.", _change(summary["change"])]
+        sections += ["## Change", f"Against {escaped(summary['before'])}.", _change(summary["change"])]
     if "pictures" in summary:
         rows = (
             [
@@ -114,8 +148,8 @@ def page(summary: Mapping[str, Any]) -> str:
             ]
             for x in summary["pictures"]
         )
-        sections += ["## Pictures", _table(["picture", "deforested", "hectares", "familiar"], rows)]
-    sections += ["## How", _table(["", ""], _how(summary).items())]
+        sections += ["## Pictures", table(["picture", "deforested", "hectares", "familiar"], rows)]
+    sections += ["## How", table(["", ""], _how(summary).items())]
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
@@ -128,8 +162,12 @@ def _sentence(summary: Mapping[str, Any]) -> str:
     )
 
 
+def _deforested(names: Sequence[str]) -> str:
+    return f"Deforested are the classes {escaped(', '.join(names))}."
+
+
 def _change(change: Mapping[str, Any]) -> str:
-    return _table(
+    return table(
         ["", "pixels", "share of the compared pixels", "hectares"],
         (
             [name, f"{x['pixels']:,}", _percent(x["share"]), _area(x["hectares"])]
@@ -143,8 +181,6 @@ def _how(summary: Mapping[str, Any]) -> dict[str, str]:
         "model": f"{summary['model']['path']}, SHA-256 {summary['model']['sha256']}",
         **{key: "none" if value is None else str(value) for key, value in summary["options"].items()},
         **{f"version of {name}": version for name, version in summary["versions"].items()},
-        "seconds": f"{summary['seconds']:.1f}",
-        "megapixels a second": f"{summary['megapixels_per_second']:.1f}",
     }
 
 
@@ -163,13 +199,9 @@ def _sum(values: Iterable[float | None]) -> float | None:
     return None if None in known or not known else sum(value for value in known if value is not None)
 
 
-def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    return "\n".join(f"| {' | '.join(line)} |" for line in [heads, ["---"] * len(heads), *rows])
-
-
 def _percent(share: float | None) -> str:
-    return "n/a" if share is None else f"{share:.2%}"
+    return MISSING if share is None else f"{share:.2%}"
 
 
 def _area(hectares: float | None) -> str:
-    return "n/a" if hectares is None else f"{hectares:,.2f}"
+    return MISSING if hectares is None else f"{hectares:,.2f}"

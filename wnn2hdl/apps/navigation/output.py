@@ -1,7 +1,5 @@
 """The results of a flight as files: tables for people and programs, and the fixes as GeoJSON."""
 
-import csv
-import io
 import json
 import math
 from collections.abc import Iterable, Sequence
@@ -11,11 +9,11 @@ from typing import Any
 
 from wnn2hdl.apps.navigation.results import FAR_M, FIGURES, FlightResult, MethodResult, SearchResult
 from wnn2hdl.files import make_folder, write_json, write_text
+from wnn2hdl.markdown import MISSING, Align, escaped, table
+from wnn2hdl.spreadsheet import csv_lines
 
 TABLE_VERSION = 1
 """Of the form of `flight.json`; it rises when a key changes its meaning or goes away."""
-
-MISSING = "n/a"
 
 
 @dataclass(frozen=True)
@@ -131,7 +129,7 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
 
 def table_csv(result: FlightResult) -> str:
     """A line for each search and method, with all figures; empty where there is none."""
-    return _csv(
+    return _joined(
         ("search", "method", *FIGURES),
         (
             (search.key, method.name, *(getattr(method, figure) for figure in FIGURES))
@@ -143,7 +141,7 @@ def table_csv(result: FlightResult) -> str:
 
 def frames_csv(result: FlightResult) -> str:
     """A line for each search, method and frame; empty where there is no position."""
-    return _csv(
+    return _joined(
         _FRAME_COLUMNS,
         (
             (search.key, method.name, *asdict(fix).values())
@@ -198,8 +196,8 @@ def flight_markdown(result: FlightResult) -> str:
     difference = result.largest_geodesic_difference_m
     sections = [
         "# Positions from edges",
-        f"Map `{result.map_name}` at {result.ground_sample_distance_m:g} m a pixel; camera {fitted}: focal "
-        f"length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
+        f"Map {escaped(result.map_name)} at {result.ground_sample_distance_m:g} m a pixel; camera {fitted}: "
+        f"focal length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
         _left_out(result),
         _STATISTICS,
         f"They differ from geodesic distances by at most {difference:.2f} m."
@@ -238,7 +236,7 @@ def _search_sections(search: SearchResult, calibrated: bool) -> list[str]:
     heads = ["method", "mean error m", "standard deviation m", "variance m²"]
     heads += [f"error ≥ {FAR_M:g} m", f"< {FAR_M:g} m"]
     rows = [_figures(method.name, method) for method in search.methods]
-    published = [_figures(f"*{row.name}: published, another flight*", row) for row in PUBLISHED]
+    published = [_figures(f"{row.name}: published, another flight", row) for row in PUBLISHED]
     confident = [
         [
             method.name,
@@ -296,20 +294,17 @@ def _percent(value: float | None) -> str:
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    aligned = ["---", *["---:"] * (len(heads) - 1)]
-    lines = ([cell.replace("|", "\\|") for cell in line] for line in (heads, aligned, *rows))
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    align: list[Align] = ["left"]
+    return table(heads, rows, align + ["right"] * (len(heads) - 1))
 
 
-def _csv(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(rows)
-    return stream.getvalue()
+def _joined(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    return "".join(csv_lines(heads, rows))
 
 
 def _point(longitude: float, latitude: float, properties: dict[str, Any]) -> dict[str, Any]:
+    # A map may count longitudes from 0 to 360; GeoJSON counts them from -180.
+    longitude = (longitude + 180) % 360 - 180
     return {
         "type": "Feature",
         "geometry": {"type": "Point", "coordinates": [round(longitude, 8), round(latitude, 8)]},

@@ -1,5 +1,6 @@
 """Trials on the cores of this machine."""
 
+import warnings
 from collections.abc import Iterable, Iterator
 
 import joblib
@@ -28,11 +29,18 @@ def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Recor
         ToolError: a process was killed from outside, as by a system short of memory.
     """
     pool = joblib.Parallel(n_jobs=joblib.cpu_count(), batch_size=1, return_as="generator_unordered")
+    done = pool(joblib.delayed(run_trials)(sets, batch) for batch in batches(trials, BATCH))
     try:
-        yield from pool(joblib.delayed(run_trials)(sets, batch) for batch in batches(trials, BATCH))
+        # Not by `yield from`, which would close the pool before the last clause.
+        for records in done:  # noqa: UP028
+            yield records
     except TerminatedWorkerError as error:
         raise ToolError(
             "a process of the sweep was killed",
             value=f"{pool.n_jobs} ran",
             hint="run the same command again: finished trials are kept",
         ) from error
+    finally:
+        # That tasks are cancelled is no news to whoever stops taking results.
+        with warnings.catch_warnings(action="ignore", category=UserWarning):
+            done.close()

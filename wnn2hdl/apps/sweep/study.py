@@ -24,14 +24,14 @@ from wnn2hdl.apps.sweep.selection import (
 from wnn2hdl.apps.sweep.store import Results, write_table
 from wnn2hdl.apps.sweep.trial import Record
 from wnn2hdl.errors import InputError
-from wnn2hdl.files import make_folder, read_json, write_json
+from wnn2hdl.files import output_folder, read_json, write_json
 from wnn2hdl.progress import Progress
 
 FINALIST_TRIALS = 100
 """Trials of each finalist, as in the reference design."""
 
 IDENTITY_FILE = "sweep.json"
-RESULTS_FILE = "results.jsonl"
+RESULTS_FILE = "results.journal"
 SUMMARY_FILE = "summary.json"
 
 
@@ -113,15 +113,31 @@ def run_sweep(
     """
     if search:
         searching.require_optuna()  # before the work, not after it
-    make_folder(folder)
-    _check_identity(sets, plan.recipe, folder / IDENTITY_FILE)
-    with Results(folder / RESULTS_FILE, len(plan), plan.position) as results:
+    with output_folder(folder, "sweep"):
+        _check_identity(sets, plan.recipe, folder / IDENTITY_FILE)
+        outcome = _run(sets, plan, folder, run, progress, finalist_trials, search=search)
+        write_json(folder / SUMMARY_FILE, outcome.to_json())
+        return outcome
+
+
+def _run(
+    sets: PixelSets,
+    plan: Plan,
+    folder: Path,
+    run: Runner,
+    progress: Progress,
+    finalist_trials: int,
+    *,
+    search: bool,
+) -> Outcome:
+    """The sweep in a folder that is ours and holds no other."""
+    with grid_results(plan, folder) as results:
         _fill(results, plan, sets, run, progress, "trials")
         found = surface(plan, results)
         front = pareto_front(results)
         write_table(results, folder / "trials.csv")
     final = Plan(plan.recipe, finalists(found, plan), finalist_trials)
-    with Results(folder / RESULTS_FILE, len(final), final.position) as results:
+    with grid_results(final, folder) as results:
         _fill(results, final, sets, run, progress, "finalists")
         decision = decide(collect(results))
         write_table(results, folder / "finalists.csv")
@@ -132,7 +148,7 @@ def run_sweep(
             searched = pareto_front(results)
             write_table(results, folder / "search.csv")
     most = max((record.luts or 0 for record in (*front, *searched)), default=0)
-    outcome = Outcome(
+    return Outcome(
         plan,
         found,
         peaks(found),
@@ -143,16 +159,11 @@ def run_sweep(
         searched,
         (hypervolume(front, most), hypervolume(searched, most)),
     )
-    write_json(folder / SUMMARY_FILE, outcome.to_json())
-    return outcome
 
 
 def circuits(plan: Plan, folder: Path, *, search: bool) -> tuple[list[int], list[float]]:
     """LUTs and accuracies of all valid circuits of a finished grid, or of its search, for a picture."""
-    opened = (
-        search_results(plan, folder) if search else Results(folder / RESULTS_FILE, len(plan), plan.position)
-    )
-    with opened as results:
+    with search_results(plan, folder) if search else grid_results(plan, folder) as results:
         pairs = [(x.luts or 0, x.circuit_accuracy or 0.0) for x in results if x.status == "valid"]
     return [luts for luts, _ in pairs], [accuracy for _, accuracy in pairs]
 
@@ -166,7 +177,7 @@ def find_trial(plan: Plan, folder: Path, name: str) -> Trial:
     if searching.position(name) is None:
         return plan.recipe.trial(*parse_name(name))
     absent = InputError("no such trial", value=repr(name), hint="run the sweep with --search first")
-    if not _search_file(plan, folder).exists():
+    if not (folder / IDENTITY_FILE).exists():
         raise absent
     with search_results(plan, folder) as results:
         if not results.has(name):
@@ -183,6 +194,11 @@ def find_trial(plan: Plan, folder: Path, name: str) -> Trial:
     )
 
 
+def grid_results(plan: Plan, folder: Path) -> Results:
+    """The results of a grid, or of its finalists, in the folder of a sweep."""
+    return Results(folder / RESULTS_FILE, _settings(folder), len(plan), plan.position)
+
+
 def search_results(plan: Plan, folder: Path) -> Results:
     """The results of the search beside a grid."""
 
@@ -190,13 +206,14 @@ def search_results(plan: Plan, folder: Path) -> Results:
         number = searching.position(name)
         return number if number is not None and number < len(plan) else None
 
-    return Results(_search_file(plan, folder), len(plan), position)
-
-
-def _search_file(plan: Plan, folder: Path) -> Path:
     # The names of a search's trials mean something for its ranges only.
     (low_n, high_n), (low_k, high_k) = _ranges(plan)
-    return folder / f"search-n{low_n}-{high_n}-k{low_k}-{high_k}.jsonl"
+    name = f"search-n{low_n}-{high_n}-k{low_k}-{high_k}.journal"
+    return Results(folder / name, _settings(folder), len(plan), position)
+
+
+def _settings(folder: Path) -> dict[str, Any]:
+    return read_json(folder / IDENTITY_FILE, "the settings of a sweep")
 
 
 def _fill(results: Results, plan: Plan, sets: PixelSets, run: Runner, progress: Progress, step: str) -> None:
@@ -215,9 +232,8 @@ def discard_another(sets: PixelSets, recipe: Recipe, folder: Path) -> None:
         ModelFileError: the settings of the sweep there are damaged.
     """
     if _differences(_identity(sets, recipe), folder / IDENTITY_FILE):
-        # The settings last: without them, results that are left would be taken for those of any sweep.
-        for path in (folder / RESULTS_FILE, *folder.glob("search-*.jsonl"), folder / IDENTITY_FILE):
-            path.unlink(missing_ok=True)
+        for path in (folder / IDENTITY_FILE, *folder.glob("*.journal")):
+            path.unlink()
 
 
 def _check_identity(sets: PixelSets, recipe: Recipe, path: Path) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.change import CHANGES, write_change
 from wnn2hdl.apps.deforestation.class_raster import open_classes
+from wnn2hdl.apps.deforestation.cleanup import MinimumSize
 from wnn2hdl.dataset import cleared_classes
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster import Georeference
@@ -93,7 +94,7 @@ def test_changes_below_the_limit_take_what_surrounds_them(save_classes: Save, tm
     before = save_classes(tmp_path / "before.tif", np.zeros_like(after), PLACE)
     later = save_classes(tmp_path / "after.tif", after, PLACE)
     outputs = tmp_path / "change.tif", tmp_path / "change.gpkg"
-    change = write_change(before, later, CLEARED, 3, *outputs, silent)
+    change = write_change(before, later, CLEARED, MinimumSize(3), *outputs, silent)
     with open_classes(outputs[0]) as dataset:
         found = dataset.read(1)
     assert np.argwhere(found).tolist() == [[row, column] for row in (2, 3, 4) for column in (4, 5, 6, 7)]

@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.class_raster import colours, open_classes
-from wnn2hdl.apps.deforestation.cleanup import despeckle, sieve_raster
+from wnn2hdl.apps.deforestation.cleanup import MinimumSize, despeckle, sieve_raster
 from wnn2hdl.raster import Georeference
 
 rasterio = pytest.importorskip("rasterio")
@@ -60,7 +60,7 @@ def sieved(
     save: Save, folder: Path, classes: NDArray[np.uint8], minimum: int, strip: int
 ) -> NDArray[np.uint8]:
     raster = save(folder / "c.tif", classes, PLACE)
-    sieve_raster(raster, folder / "s.tif", minimum, silent, strip_pixels=strip)
+    sieve_raster(raster, folder / "s.tif", MinimumSize(minimum), silent, strip_pixels=strip)
     with open_classes(folder / "s.tif") as dataset:
         return np.asarray(dataset.read(1))
 
@@ -122,4 +122,17 @@ def test_the_dissolved_regions_are_counted(save_classes: Save, tmp_path: Path) -
     classes = np.zeros((5, 5), dtype=np.uint8)
     classes[0, 0] = classes[3, 3] = 1
     raster = save_classes(tmp_path / "c.tif", classes, PLACE)
-    assert sieve_raster(raster, tmp_path / "s.tif", 2, silent) == 2
+    assert sieve_raster(raster, tmp_path / "s.tif", MinimumSize(2), silent) == 2
+
+
+def test_a_minimum_area_is_each_regions_own(save_classes: Save, tmp_path: Path) -> None:
+    degrees = Georeference(rasterio.CRS.from_epsg(4326).to_wkt(), (0.5, 0.0, 10.0, 0.0, -0.5, 70.0))
+    classes = np.zeros((140, 40), dtype=np.uint8)
+    classes[18:22, 10:14], classes[134:138, 10:14] = 1, 1
+    raster = save_classes(tmp_path / "a.tif", classes, degrees)
+    # 16 pixels each: half as large at 60 degrees north as near the equator.
+    sieve_raster(raster, tmp_path / "s.tif", MinimumSize(hectares=3e6), silent, strip_pixels=40 * 7)
+    with open_classes(tmp_path / "s.tif") as dataset:
+        found = dataset.read(1)
+    assert not found[:70].any()
+    assert np.array_equal(found[70:], classes[70:])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from wnn2hdl.apps.deforestation import mapping
 from wnn2hdl.apps.deforestation.class_raster import open_classes
 from wnn2hdl.apps.deforestation.classify import Method
-from wnn2hdl.apps.deforestation.journal import Journal
+from wnn2hdl.apps.deforestation.finished import FinishedWindows
 from wnn2hdl.apps.deforestation.mapping import Coverage, Runner, write_classes
 from wnn2hdl.apps.deforestation.task import Task
 from wnn2hdl.apps.deforestation.windows import cut
@@ -34,7 +34,7 @@ def small_windows(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def written(task: Task, run: Runner, folder: Path, **identity: Any) -> tuple[NDArray[np.uint8], Coverage]:
     output = folder / "classes.tif"
-    with Journal(folder / "windows", identity) as kept:
+    with FinishedWindows(folder / "windows", identity) as kept:
         coverage = write_classes(task, task.open(), kept, run, output, PALETTE, lambda *_: None)
     with open_classes(output) as dataset:
         assert Georeference.of(dataset) == Georeference()
@@ -97,7 +97,7 @@ def test_memory_holds_one_row_of_windows(
         pass
     task = Task(path, Reading(), neighbourhood, Method())
     tracemalloc.start()
-    with Journal(tmp_path / "windows", {}) as kept:
+    with FinishedWindows(tmp_path / "windows", {}) as kept:
         output = tmp_path / "classes.tif"
         write_classes(task, task.open(), kept, counting(), output, PALETTE, lambda *_: None)
     _, peak = tracemalloc.get_traced_memory()

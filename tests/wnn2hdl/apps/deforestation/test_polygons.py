@@ -125,3 +125,56 @@ def test_a_class_without_a_name_leaves_no_file(save_classes: Save, tmp_path: Pat
     with pytest.raises(InputError, match="class of index 2"):
         write_polygons(raster, tmp_path / "out" / "p.geojson", NAMES[:2], silent)
     assert list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.parametrize("system", ["EPSG:32760", "EPSG:3832", "EPSG:3460", "EPSG:4326"])
+@pytest.mark.parametrize("turn", [0, 360])
+def test_a_clearing_across_the_antimeridian_is_cut_there(
+    save_classes: Save, tmp_path: Path, system: str, turn: int
+) -> None:
+    crs = pyproj.CRS(system)
+    if turn and not crs.is_geographic:
+        return
+    pixel = 1e-4 if crs.is_geographic else 10.0
+    middle = pyproj.Transformer.from_crs("EPSG:4326", crs, always_xy=True).transform(180.0, -16.8)
+    west, north = (-180.0 + turn if crs.is_geographic else middle[0]) - 50 * pixel, middle[1] + 50 * pixel
+    classes = np.zeros((100, 100), dtype=np.uint8)
+    classes[40:60, 35:65] = 1
+    classes[45:55, 45:55] = 0
+    place = Georeference(crs.to_wkt(), (pixel, 0.0, west, 0.0, -pixel, north))
+    raster = save_classes(tmp_path / "c.tif", classes, place)
+    write_polygons(raster, tmp_path / "p.geojson", NAMES, silent)
+    (feature,) = features(tmp_path / "p.geojson")
+    shape = shapely.from_geojson(json.dumps(feature["geometry"]))
+    assert shape.is_valid
+    assert shape.geom_type == "MultiPolygon"
+    assert shape.bounds[0] == -180
+    assert shape.bounds[2] == 180
+    on_earth = pyproj.Geod(ellps="WGS84")
+    area = sum(on_earth.geometry_area_perimeter(part)[0] for part in shape.geoms)
+    assert area / 1e4 == pytest.approx(feature["properties"]["area_ha"], rel=1e-4)
+
+
+def test_a_geopackage_lies_on_its_raster(save_classes: Save, tmp_path: Path) -> None:
+    pyogrio = pytest.importorskip("pyogrio")
+    place = Georeference(DEGREES.crs, (1e-4, 0.0, 300.0, 0.0, -1e-4, -3.0))
+    raster = save_classes(tmp_path / "c.tif", np.ones((9, 9), np.uint8), place)
+    write_polygons(raster, tmp_path / "p.gpkg", NAMES, silent)
+    _, _, shapes, _ = pyogrio.raw.read(tmp_path / "p.gpkg")
+    assert shapely.from_wkb(shapes[0]).bounds == pytest.approx((300, -3.0009, 300.0009, -3))
+
+
+HOSTILE = "=1+1|</script>\n\"'*/,&<b>\t`" + "x" * 5000
+
+
+@pytest.mark.parametrize("name", [HOSTILE, "+1", "@x", "a\r\nb"])
+def test_no_name_of_a_class_changes_a_file_of_polygons(save_classes: Save, tmp_path: Path, name: str) -> None:
+    pyogrio = pytest.importorskip("pyogrio")
+    raster = save_classes(tmp_path / "c.tif", np.ones((3, 3), np.uint8), DEGREES)
+    for output in (tmp_path / "p.geojson", tmp_path / "p.gpkg"):
+        write_polygons(raster, output, ("forest", name), silent)
+    (feature,) = features(tmp_path / "p.geojson")
+    assert feature["properties"]["class"] == name
+    assert len((tmp_path / "p.geojson").read_text().splitlines()) == 3
+    _, _, _, fields = pyogrio.raw.read(tmp_path / "p.gpkg")
+    assert fields[0].tolist() == [name]

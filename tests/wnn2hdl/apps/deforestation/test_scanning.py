@@ -1,7 +1,9 @@
 """Whole scans: what is written, what it says, and that nothing half-written is left."""
 
 import json
+import resource
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,11 +14,13 @@ from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.class_raster import open_classes
 from wnn2hdl.apps.deforestation.classify import Method
+from wnn2hdl.apps.deforestation.cleanup import MinimumSize
 from wnn2hdl.apps.deforestation.local import run_locally
 from wnn2hdl.apps.deforestation.mapping import Runner
 from wnn2hdl.apps.deforestation.options import ScanOptions
 from wnn2hdl.apps.deforestation.scanning import Scanner
 from wnn2hdl.errors import InputError
+from wnn2hdl.files import output_folder
 from wnn2hdl.images import write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.raster import NODATA, Reading
@@ -36,19 +40,19 @@ def scan(model_file: Path) -> Scan:
         *,
         options: ScanOptions | None = None,
         before: Path | None = None,
-        before_mask: Path | None = None,
+        before_reading: Reading | None = None,
         run: Runner = partial(run_locally, 2),  # noqa: B008
     ) -> dict[str, Any]:
         scanner = Scanner.open(model_file, options or ScanOptions(), run, lambda *_: None)
-        return scanner.scan(picture, output, before, before_mask)
+        return scanner.scan(picture, output, before, before_reading)
 
     return run
 
 
-def save_scene(path: Path, pixels: NDArray[np.uint8], east: float = 400_000) -> Path:
+def save_scene(path: Path, pixels: NDArray[np.unsignedinteger[Any]], east: float = 400_000) -> Path:
     """A GeoTIFF of 100 m a pixel on the central meridian's side of a UTM zone."""
     place = {"crs": "EPSG:32720", "transform": rasterio.Affine(100, 0, east, 0, -100, 9_100_000)}
-    size = {"height": pixels.shape[0], "width": pixels.shape[1], "count": 3, "dtype": "uint8"}
+    size = {"height": pixels.shape[0], "width": pixels.shape[1], "count": 3, "dtype": pixels.dtype.name}
     with rasterio.open(path, "w", driver="GTiff", photometric="rgb", **size, **place) as target:
         target.write(np.moveaxis(pixels, 2, 0))
     return path
@@ -114,11 +118,11 @@ def test_small_regions_are_dissolved(scan: Scan, tmp_path: Path) -> None:
     expected = pixels[..., 0] > 100
     assert np.array_equal(classes_of(scan, scene, tmp_path), expected)
     expected[40:44, 40:44] = False
-    for options in (ScanOptions(minimum_pixels=17), ScanOptions(minimum_hectares=16.5)):
+    for options in (ScanOptions(minimum=MinimumSize(17)), ScanOptions(minimum=MinimumSize(hectares=16.5))):
         assert np.array_equal(classes_of(scan, scene, tmp_path, options), expected)
     write_png(tmp_path / "plain.png", pixels)
     with pytest.raises(InputError, match="no georeference"):
-        scan(tmp_path / "plain.png", tmp_path / "plain", options=ScanOptions(minimum_hectares=1))
+        scan(tmp_path / "plain.png", tmp_path / "plain", options=ScanOptions(minimum=MinimumSize(hectares=1)))
     assert not (tmp_path / "plain").exists()
 
 
@@ -216,14 +220,6 @@ def test_an_interrupted_folder_goes_on_with_the_next_picture(
     assert len(again.done) == 5
 
 
-def test_pictures_scanned_before_do_not_make_a_folder_quick(
-    scan: Scan, picture_file: Path, tmp_path: Path
-) -> None:
-    first = scan(picture_file.parent, tmp_path / "out")
-    again = scan(picture_file.parent, tmp_path / "out")
-    assert again["seconds"] == first["seconds"] == first["pictures"][0]["seconds"]
-
-
 def test_an_interruption_leaves_nothing_half_written(
     scan: Scan, picture_file: Path, counting: Any, tmp_path: Path
 ) -> None:
@@ -315,7 +311,9 @@ def test_the_earlier_date_has_clouds_of_its_own(
     clouds[:, 100:] = 1
     write_png(tmp_path / "clouds.png", clouds)
     before, after = (save_scene(tmp_path / name, pixels) for name in ("before.tif", "after.tif"))
-    summary = scan(after, tmp_path / "out", before=before, before_mask=tmp_path / "clouds.png")
+    summary = scan(
+        after, tmp_path / "out", before=before, before_reading=Reading(mask=tmp_path / "clouds.png")
+    )
     assert summary["classified_pixels"] == clouds.size
     assert summary["change"]["compared_pixels"] == clouds.size - clouds.sum()
 
@@ -330,6 +328,8 @@ def test_bad_input_leaves_no_folder(scan: Scan, picture_file: Path, tmp_path: Pa
 
 def test_a_folder_takes_the_place_of_a_picture(scan: Scan, picture_file: Path, tmp_path: Path) -> None:
     scan(picture_file, tmp_path / "out")
+    (tmp_path / "out" / ".scan").mkdir()
+    (tmp_path / "out" / ".scan" / "windows").write_text("of a killed scan")
     scan(picture_file.parent, tmp_path / "out")
     assert names(tmp_path / "out") == {"picture", "summary.json", "summary.md"}
 
@@ -364,3 +364,147 @@ def test_a_damaged_picture_does_not_keep_others_of_a_folder_from_being_scanned(
     write_png(chips / "a.png", pixels)
     assert len(scan(chips, out, run=run)["pictures"]) == 3
     assert len(run.done) == 3
+
+
+def levels(path: Path, pixels: NDArray[np.uint8], added: int, scale: float, offset: float) -> Path:
+    """A scene in Sentinel-2's levels, with the scale and the offset that its file states."""
+    save_scene(path, pixels.astype(np.uint16) * 12 + np.uint16(added))
+    with rasterio.open(path, "r+") as target:
+        target.scales, target.offsets = (scale,) * 3, (offset,) * 3
+    return path
+
+
+def test_dates_that_state_their_units_share_a_scale(
+    scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    before = levels(tmp_path / "before.tif", pixels, 0, 1e-4, 0.0)
+    after = levels(tmp_path / "after.tif", pixels, 1000, 1e-4, -0.1)
+    summary = scan(after, tmp_path / "out", options=ScanOptions(Reading(scale=(0, 0.3072))), before=before)
+    assert summary["deforested"]["pixels"] > 0
+    assert summary["change"]["newly_cleared"]["pixels"] == summary["change"]["regrown"]["pixels"] == 0
+
+
+def test_dates_that_are_calibrated_otherwise_are_refused_or_scaled_each_by_itself(
+    scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    before = levels(tmp_path / "before.tif", pixels, 0, 1.0, 0.0)
+    after = levels(tmp_path / "after.tif", pixels, 1000, 1.0, -0.1)
+    with pytest.raises(InputError, match=r"offset 0, .* offset -0\.1, .*say --scale .* --before-scale"):
+        scan(after, tmp_path / "out", options=ScanOptions(Reading(scale=(0, 3072))), before=before)
+    assert not (tmp_path / "out").exists()
+    options = ScanOptions(Reading(scale=(1000, 4072)))
+    summary = scan(
+        after, tmp_path / "out", options=options, before=before, before_reading=Reading(scale=(0, 3072))
+    )
+    assert summary["deforested"]["pixels"] > 0
+    assert summary["change"]["newly_cleared"]["pixels"] == summary["change"]["regrown"]["pixels"] == 0
+    assert summary["before_options"]["scale"] == [0, 3072]
+
+
+def test_the_earlier_date_has_bands_of_its_own(scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path) -> None:
+    after = save_scene(tmp_path / "after.tif", pixels)
+    before = save_scene(tmp_path / "before.tif", pixels[..., ::-1])
+    assert scan(after, tmp_path / "a", before=before)["change"]["newly_cleared"]["pixels"] > 0
+    reading = Reading(bands=(3, 2, 1))
+    summary = scan(after, tmp_path / "b", before=before, before_reading=reading)
+    assert summary["change"]["newly_cleared"]["pixels"] == 0
+
+
+def test_pictures_of_a_folder_are_calibrated_alike(
+    scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    levels(folder / "a.tif", pixels, 0, 1.0, 0.0)
+    levels(folder / "b.tif", pixels, 1000, 1.0, -0.1)
+    with pytest.raises(InputError, match=r"1 of 2 pictures are not scanned: .*mean different values"):
+        scan(folder, tmp_path / "out", options=ScanOptions(Reading(scale=(0, 3072))))
+
+
+def test_totals_of_a_folder_count_ground_once(scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path) -> None:
+    whole = scan(save_scene(tmp_path / "whole.tif", pixels), tmp_path / "whole")
+    tiles = tmp_path / "tiles"
+    tiles.mkdir()
+    save_scene(tiles / "a.tif", pixels[:, :150])
+    save_scene(tiles / "b.tif", pixels[:, 60:], east=400_000 + 60 * 100)
+    summary = scan(tiles, tmp_path / "out")
+    for figure in ("pixels", "share"):
+        assert summary["deforested"][figure] == whole["deforested"][figure]
+    assert summary["deforested"]["hectares"] == pytest.approx(whole["deforested"]["hectares"])
+    assert summary["overlap"]["pictures"] == 1
+    assert summary["overlap"]["pixels"] == 150 * 90
+    assert summary["overlap"]["hectares"] == pytest.approx(150 * 90, rel=1e-3)
+    assert any("1 of 2 pictures share ground with later ones" in x for x in summary["warnings"])
+    assert "share ground" in (tmp_path / "out" / "summary.md").read_text()
+
+
+def test_of_two_dates_in_a_folder_the_last_by_name_is_counted(scan: Scan, tmp_path: Path) -> None:
+    dates = tmp_path / "dates"
+    dates.mkdir()
+    for name, level in (("2023", 200), ("2024", 80)):
+        save_scene(dates / f"{name}.tif", np.full((50, 60, 3), level, dtype=np.uint8))
+    summary = scan(dates, tmp_path / "out")
+    assert summary["deforested"]["pixels"] == 0
+    assert summary["classified_pixels"] == 50 * 60
+    assert [x["deforested"]["pixels"] for x in summary["pictures"]] == [50 * 60, 0]
+
+
+def test_pictures_that_lie_nowhere_are_taken_to_lie_apart(
+    scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    (tmp_path / "pictures").mkdir()
+    for name in "ab":
+        write_png(tmp_path / "pictures" / f"{name}.png", pixels)
+    summary = scan(tmp_path / "pictures", tmp_path / "out")
+    assert summary["overlap"] == {"pictures": 0, "pixels": 0, "hectares": None}
+    assert summary["classified_pixels"] == 2 * pixels[..., 0].size
+
+
+def test_two_scans_into_one_folder_are_refused(scan: Scan, picture_file: Path, tmp_path: Path) -> None:
+    with (
+        output_folder(tmp_path / "out", "scan"),
+        pytest.raises(InputError, match="another process is writing"),
+    ):
+        scan(picture_file, tmp_path / "out")
+
+
+@pytest.mark.parametrize("room", [0, 100, 2_000, 20_000, 60_000])
+def test_a_full_disk_is_one_line_and_leaves_nothing_half_written(
+    room: int, scan: Scan, pixels: NDArray[np.uint8], tmp_path: Path
+) -> None:
+    scene = save_scene(tmp_path / "a.tif", np.tile(pixels, (4, 4, 1)))
+    options = ScanOptions(vector="gpkg")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, hard))
+    try:
+        with pytest.raises(InputError) as caught:
+            scan(scene, tmp_path / "out", options=options)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "\n" not in str(caught.value)
+    assert not (tmp_path / "out").exists() or names(tmp_path / "out") <= {".scan"}
+    scan(scene, tmp_path / "out", options=options)
+    scan(scene, tmp_path / "undisturbed", options=options)
+    for file in (tmp_path / "undisturbed").iterdir():
+        assert file.read_bytes() == (tmp_path / "out" / file.name).read_bytes()
+
+
+HOSTILE = "=1|<script>`*a*`\n# b\"'&"
+
+
+def test_no_name_changes_a_summary(red_model: WisardModel, pixels: NDArray[np.uint8], tmp_path: Path) -> None:
+    model = replace(red_model, classes=("forest", HOSTILE + "x" * 5000))
+    model.save(tmp_path / "model.json")
+    folder = tmp_path / HOSTILE.replace("/", "")
+    folder.mkdir()
+    write_png(folder / f"{HOSTILE}.png", pixels)
+    scanner = Scanner.open(tmp_path / "model.json", ScanOptions(), partial(run_locally, 1), lambda *_: None)
+    summary = scanner.scan(folder, tmp_path / "out")
+    assert summary["classes"][1]["class"] == HOSTILE + "x" * 5000
+    assert names(tmp_path / "out") == {HOSTILE, "summary.json", "summary.md"}
+    page = (tmp_path / "out" / "summary.md").read_text()
+    headings = [line for line in page.splitlines() if line.startswith("#")]
+    assert [line.split()[1] for line in headings] == ["Scan", "Pictures", "How"]
+    assert "<script>" not in page.replace("\\<script\\>", "")
+    rows = [line.replace("\\|", "") for line in page.splitlines() if line.startswith("|")]
+    assert {row.count("|") for row in rows} == {5, 3}

@@ -1,10 +1,15 @@
 """What a summary counts as deforested, and what it warns of."""
 
-import pytest
-
 from wnn2hdl.apps.deforestation.areas import ClassArea
 from wnn2hdl.apps.deforestation.mapping import Coverage
-from wnn2hdl.apps.deforestation.summary import class_figures, coverage_figures, total_figures, warnings
+from wnn2hdl.apps.deforestation.summary import (
+    Totals,
+    class_figures,
+    coverage_figures,
+    overlap_figures,
+    summed,
+    warnings,
+)
 
 AREAS = (
     ClassArea("forest", 600, 6.0),
@@ -39,12 +44,19 @@ def test_nothing_classified_has_no_share() -> None:
     assert coverage_figures(Coverage(0, 0)) == {"share": None, "threshold": 0.9, "foreign": False}
 
 
-def test_pictures_add_up_and_one_without_a_place_hides_the_area() -> None:
-    one, other = class_figures(AREAS), class_figures(AREAS)
-    assert total_figures([one, other])["deforested"]["pixels"] == 600
-    assert total_figures([one, other])["deforested"]["hectares"] == pytest.approx(6)
-    other["classes"][1]["hectares"] = None
-    assert total_figures([one, other])["deforested"]["hectares"] is None
+def test_areas_add_up_and_one_without_a_place_hides_the_sum() -> None:
+    assert summed([ClassArea("a", 2, 0.5), ClassArea("b", 3, 1.0)]) == ClassArea("a", 5, 1.5)
+    assert summed([ClassArea("a", 2, 0.5), ClassArea("b", 3, None)]) == ClassArea("a", 5, None)
+
+
+def test_what_pictures_share_is_what_all_show_less_what_is_counted() -> None:
+    totals = Totals(AREAS, ClassArea("forest", 1500, 15.0), sharing=2)
+    assert overlap_figures(totals) == {"pictures": 2, "pixels": 500, "hectares": 5.0}
+    (warning,) = totals.warnings(3)
+    assert warning.startswith("2 of 3 pictures share ground with later ones (by name): 5.00 ha are counted")
+    apart = Totals(AREAS, summed(AREAS), sharing=0)
+    assert overlap_figures(apart) == {"pictures": 0, "pixels": 0, "hectares": 0.0}
+    assert apart.warnings(3) == []
 
 
 def test_foreign_imagery_is_warned_of() -> None:

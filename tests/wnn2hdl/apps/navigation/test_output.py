@@ -54,7 +54,7 @@ def test_markdown_has_a_row_for_each_method_and_the_published_ones_beside() -> N
     assert "| perspective + Canny | 65.00 | 55.00 | 3025.00 | 50.00 % | 50.00 % |" in page
     assert page.count("| perspective + weightless | 6.00 | 1.63 | 2.67 | 0.00 % | 100.00 % |") == 2
     published = (
-        "| *perspective + Canny: published, another flight* | 36.04 | 20.27 | 410.86 | 0.00 % | 100.00 % |"
+        "| perspective + Canny: published, another flight | 36.04 | 20.27 | 410.86 | 0.00 % | 100.00 % |"
     )
     assert page.count(published) == 2
     assert "| perspective + Canny | 3 | 33.33 % | 100.00 % | 10.00 | 0.020 |" in page
@@ -144,6 +144,23 @@ def test_features_are_points_with_longitude_first_and_the_truth_once() -> None:
     assert features[4]["geometry"]["coordinates"] == [-61.25, -9.8]
     assert features[4]["properties"]["error_m"] == 120
     assert features[4]["properties"]["fixed"] is False
+
+
+def test_longitudes_of_a_map_to_360_are_brought_home() -> None:
+    far = replace(fix(1, 4.0), longitude=300.5, truth_longitude=-60.0)
+    points = fix_features(SearchResult("map", None, (replace(EDGES, fixes=(far,)),)))
+    assert [point["geometry"]["coordinates"][0] for point in points] == [-60.0, -59.5]
+
+
+def test_no_name_of_a_map_or_frame_changes_a_table() -> None:
+    hostile = "=1|</script>\n#`\"',*_" + "x" * 5000
+    method = replace(EDGES, fixes=(replace(fix(1, 4.0), frame=hostile),))
+    result = replace(RESULT, map_name=hostile, searches=(SearchResult("map", None, (method,)),))
+    _, row = csv.reader(frames_csv(result).splitlines())
+    assert row[2] == "'" + hostile.replace("\n", " ")
+    page, plain = (flight_markdown(x).splitlines() for x in (result, replace(result, map_name="map.tif")))
+    assert len(page) == len(plain)
+    assert "</script>" not in "".join(page)
 
 
 def test_all_files_are_written_and_read_back(tmp_path: Path) -> None:

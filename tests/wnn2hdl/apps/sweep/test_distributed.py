@@ -15,12 +15,12 @@ from wnn2hdl.apps.sweep.trial import Record, run_trials
 
 def table(path: Path, plan: Plan, records: Iterable[list[Record]]) -> bytes:
     """The table of all records, after checking that each trial is there once."""
-    with Results(path.with_suffix(".jsonl"), len(plan), plan.position) as results:
+    with Results(path.with_suffix(".journal"), {}, len(plan), plan.position) as results:
         for some in records:
             results.append(some)
         assert len(results) == len(plan)
         write_table(results, path)
-    assert len(path.with_suffix(".jsonl").read_bytes().splitlines()) == len(plan)
+    assert len(path.with_suffix(".journal").read_bytes().splitlines()) == 1 + 2 * len(plan)
     return path.read_bytes()
 
 

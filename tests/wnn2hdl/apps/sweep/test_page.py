@@ -77,3 +77,13 @@ def test_presenting_a_sweep_draws_what_its_page_shows(sets: PixelSets, plan: Pla
     outline.feed(present(outcome, sets, tmp_path).read_text(encoding="utf-8"))
     assert len(outline.images) == len(list(tmp_path.glob("*.svg")))
     assert all(picture.startswith("data:") for picture in outline.images)
+
+
+def test_no_name_of_an_image_changes_the_page(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
+    hostile = "=1|</script>\n#`\"'*/" + "x" * 5000
+    renamed = replace(sets, training_images=(hostile, "b"), held_out_images=(hostile + "c", "d"))
+    pages = []
+    for number, some in enumerate((sets, renamed)):
+        page(some, plan, tmp_path / str(number), ())
+        pages.append((tmp_path / str(number) / "index.html").read_bytes())
+    assert pages[0] == pages[1]

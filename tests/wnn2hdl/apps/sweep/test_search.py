@@ -28,7 +28,7 @@ def rewarding(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Record]
 
 def searched(sets: PixelSets, recipe: Recipe, path: Path, run: Any = rewarding) -> list[Record]:
     pytest.importorskip("optuna")
-    with Results(path, TRIALS, position) as results:
+    with Results(path, {}, TRIALS, position) as results:
         search(sets, recipe, ((2, 12), (2, 20)), results, run, lambda *_: None)
         return list(results)
 
@@ -36,7 +36,7 @@ def searched(sets: PixelSets, recipe: Recipe, path: Path, run: Any = rewarding) 
 def test_later_generations_are_better_than_the_random_first(
     sets: PixelSets, recipe: Recipe, tmp_path: Path
 ) -> None:
-    found = searched(sets, recipe, tmp_path / "s.jsonl")
+    found = searched(sets, recipe, tmp_path / "s.journal")
     assert len(found) == TRIALS
     first, last = found[:POPULATION], found[-POPULATION:]
     assert sum(x.luts or 0 for x in last) < sum(x.luts or 0 for x in first) * 0.6
@@ -44,7 +44,7 @@ def test_later_generations_are_better_than_the_random_first(
 
 
 def test_trials_are_within_what_can_be_built(sets: PixelSets, recipe: Recipe, tmp_path: Path) -> None:
-    found = searched(sets, recipe, tmp_path / "s.jsonl")
+    found = searched(sets, recipe, tmp_path / "s.journal")
     for record in found:
         assert set(record.bits) <= set(SEARCHED_BITS)
         assert 1 <= len(record.bits) <= MAX_BITS
@@ -54,15 +54,15 @@ def test_trials_are_within_what_can_be_built(sets: PixelSets, recipe: Recipe, tm
 
 
 def test_exact_mode_searches_no_care_threshold(sets: PixelSets, recipe: Recipe, tmp_path: Path) -> None:
-    exact = searched(sets, replace(recipe, care_minimum=None), tmp_path / "s.jsonl")
+    exact = searched(sets, replace(recipe, care_minimum=None), tmp_path / "s.journal")
     assert {record.care_minimum for record in exact} == {None}
 
 
 def test_an_interrupted_search_goes_the_same_way(sets: PixelSets, recipe: Recipe, tmp_path: Path) -> None:
-    whole = searched(sets, recipe, tmp_path / "whole.jsonl")
-    lines = (tmp_path / "whole.jsonl").read_bytes().splitlines(keepends=True)
-    (tmp_path / "part.jsonl").write_bytes(b"".join(lines[:120]))
-    assert searched(sets, recipe, tmp_path / "part.jsonl") == whole
+    whole = searched(sets, recipe, tmp_path / "whole.journal")
+    lines = (tmp_path / "whole.journal").read_bytes().splitlines(keepends=True)
+    (tmp_path / "part.journal").write_bytes(b"".join(lines[: 1 + 2 * 120]))
+    assert searched(sets, recipe, tmp_path / "part.journal") == whole
 
 
 def test_failed_trials_do_not_stop_the_search(sets: PixelSets, recipe: Recipe, tmp_path: Path) -> None:
@@ -70,7 +70,7 @@ def test_failed_trials_do_not_stop_the_search(sets: PixelSets, recipe: Recipe, t
         for number, records in enumerate(rewarding(sets, trials)):
             yield records if number % 3 else [replace(records[0], status="failed", accuracy=None)]
 
-    assert len(searched(sets, recipe, tmp_path / "s.jsonl", failing)) == TRIALS
+    assert len(searched(sets, recipe, tmp_path / "s.journal", failing)) == TRIALS
 
 
 def test_the_extra_is_named_where_it_is_missing(
@@ -78,7 +78,7 @@ def test_the_extra_is_named_where_it_is_missing(
 ) -> None:
     monkeypatch.setitem(sys.modules, "optuna", None)
     with (
-        Results(tmp_path / "s.jsonl", TRIALS, position) as results,
+        Results(tmp_path / "s.journal", {}, TRIALS, position) as results,
         pytest.raises(ExtraMissingError, match=r"wnn2hdl\[search\]"),
     ):
         search(sets, recipe, ((2, 3), (2, 3)), results, rewarding, lambda *_: None)

@@ -108,7 +108,7 @@ def test_a_sweep_killed_by_force_goes_on_where_it_stopped(tmp_path: Path) -> Non
 
     killed, unbroken = tmp_path / "killed", tmp_path / "unbroken"
     process = run(killed)
-    results = killed / "results.jsonl"
+    results = killed / "results.journal"
     deadline = time.monotonic() + 120
     while not (results.exists() and results.stat().st_size > 8_000) and time.monotonic() < deadline:
         time.sleep(0.02)
@@ -158,7 +158,7 @@ def test_a_sweep_begins_anew_where_another_was_discarded(
 def test_a_sweep_of_the_same_settings_is_kept(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
     discard_another(sets, plan.recipe, tmp_path / "none")
     swept(sets, plan, tmp_path)
-    results = tmp_path / "results.jsonl"
+    results = tmp_path / "results.journal"
     before = results.read_bytes()
     discard_another(sets, plan.recipe, tmp_path)
     assert results.read_bytes() == before
