@@ -132,6 +132,6 @@ def _format(encoder: Thermometer) -> FixedPoint:
     if encoder.input is None:
         raise InputError(
             "the thermometer reads real numbers, and hardware reads words",
-            hint="state the format of the words: --input, as in s16.12",
+            hint="state the format of the words with --input, as in --input Q3.12",
         )
     return encoder.input

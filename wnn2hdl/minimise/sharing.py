@@ -8,7 +8,6 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wnn2hdl.ir import TruthTable
 from wnn2hdl.ir.care import CareSet
@@ -107,8 +106,8 @@ def _table(node: Table, inputs: tuple[Slice, ...], packed: bytes) -> Table:
     size = 1 << len(inputs)
     flags = np.unpackbits(np.frombuffer(packed, np.uint8), count=2 * size).astype(np.bool_).reshape(2, size)
     names = tuple(f"i{position}" for position in range(len(inputs)))
-    care: NDArray[np.bool_] = flags[0] | flags[1]
-    return Table(node.name, inputs, TruthTable(names, node.function.outputs, flags[0][:, np.newaxis], care))
+    function = TruthTable(names, ("fires",), flags[0][:, np.newaxis], flags[0] | flags[1])
+    return Table(node.name, inputs, function)
 
 
 def _sum(node: Sum, alias: dict[Slice, Bit]) -> Sum:
