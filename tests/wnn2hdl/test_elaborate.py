@@ -185,8 +185,8 @@ def mapped(inputs: tuple[str, ...], outputs: tuple[str, ...], rule: Callable[[An
         "one",
         "One table.",
         (Port("word", len(inputs)),),
-        (Table("lookup", word, TruthTable.exact(inputs, outputs, values)),),
-        {"y": (Slice("lookup", 0, len(outputs)),)},
+        (Table("rule", word, TruthTable.exact(inputs, outputs, values)),),
+        {"y": (Slice("rule", 0, len(outputs)),)},
     )
     (table,) = minimise(circuit, 0, silent).circuit.tables().values()
     assert isinstance(table.function, LutNetwork)
@@ -232,9 +232,13 @@ def test_the_matcher_is_right_for_every_pair() -> None:
 def test_a_table_that_is_not_mapped_is_refused() -> None:
     table = TruthTable.exact(("a",), ("y",), np.array([[True], [False]]))
     circuit = Circuit(
-        "raw", "Raw.", (Port("a", 1),), (Table("not", Port("a", 1).word, table),), {"y": (Slice("not"),)}
+        "raw",
+        "Raw.",
+        (Port("a", 1),),
+        (Table("inverter", Port("a", 1).word, table),),
+        {"y": (Slice("inverter"),)},
     )
-    with pytest.raises(ValueError, match="not is not mapped to LUTs"):
+    with pytest.raises(ValueError, match="inverter is not mapped to LUTs"):
         Fragment.get(component(circuit, style="cells"), None)
 
 

@@ -62,7 +62,6 @@ class Circuit:
                     raise ValueError(f"two drivers of {net} in {self.name}")
                 widths[net] = width
         for port, word in self.drivers.items():
-            check_identifier(port)
             self._check(word, widths, port)
             if port in widths:
                 raise ValueError(f"{port} in {self.name} is an output and a net")

@@ -84,8 +84,8 @@ def pipeline() -> Circuit:
         {"count": (Slice("held", 0, 4),)},
     )
     nodes = (
-        Register("module", A.word),
-        Instance("first", stage, {"a": (Slice("module", 0, 8),)}),
+        Register("held_a", A.word),
+        Instance("first", stage, {"a": (Slice("held_a", 0, 8),)}),
         Register("other", B.word, 2),
         ArgMax("best", ((Slice("first.count", 0, 4),), (Slice("other", 0, 4),)), "last"),
         Register("answer", (Slice("best"), Slice("other", 2, 3)), 3),
@@ -102,10 +102,10 @@ def unread() -> Circuit:
     nodes = (
         Instance("part", inner, {"a": A.word, "b": B.word}),
         Sum("sum", (Slice("part.ones_bits", 0, 4),), (1, 2, 3, 4)),
-        Threshold("bit_never", A.word, 256),
-        Threshold("bit_always", A.word, 0),
+        Threshold("never", A.word, 256),
+        Threshold("ever", A.word, 0),
     )
-    drivers = {"y": (Slice("sum", 1, 2),), "constants": (Slice("bit_never"), Slice("bit_always"), Slice("bit_always"))}
+    drivers = {"y": (Slice("sum", 1, 2),), "constants": (Slice("never"), Slice("ever"), Slice("ever"))}
     return Circuit("unread", "Partly read.", (A, B), nodes, drivers)
 
 
@@ -182,7 +182,7 @@ def test_registers_have_a_clock_start_values_and_no_reset() -> None:
     assert "    output reg  [3:0] q,\n    output wire [3:0] again,\n" in text
     assert "    initial q = 4'h0;\n    always @(posedge clk) q <= " in text
     assert "    assign again = q;\n    assign low = q[0];\n" in text
-    assert "my_stage first (.clk(clk), .a(module_1), .count(first_count));" in text
+    assert "my_stage first (.clk(clk), .a(held_a), .count(first_count));" in text
     assert not re.search(r"\b(rst|reset)", text)
 
 
