@@ -85,10 +85,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
             part: (circuit, Circuit((syntheses[part].netlist_verilog,), circuit.top))
             for part, circuit in emitted.items()
         },
-        {
-            part: ({x.name: x.width for x in circuit.inputs}, {x.name: x.width for x in circuit.outputs})
-            for part, circuit in design.parts.items()
-        },
+        {part: circuit.widths for part, circuit in design.parts.items()},
     )
     failures = [
         mismatch,

@@ -29,8 +29,8 @@ class CompileOptions:
     Attributes:
         target: what the model is compiled to; None for the first that it can be.
         name: what the names of all Verilog modules begin with; None makes it from the name of the folder.
-        input: format of the words that a network reads as features, as in ``Q3.12`` (a sign bit, 3 whole and 12
-            fraction bits) or ``UQ8.0`` (without a sign); None for what the model states.
+        input: format of the words that a network reads as features, as in ``Q3.12`` (a sign bit, 3 whole and
+            12 fraction bits) or ``UQ8.0`` (without a sign); None for what the model states.
         mode: equal to the model on every input, or on the care set.
         care: folder of the imagery that makes the care set; needed in domain mode.
         care_minimum: how often a code must occur in it to be cared for.

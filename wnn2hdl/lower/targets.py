@@ -96,6 +96,13 @@ def _votes_on_features(model: AnyModel) -> bool:
     return isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words)
 
 
+def _reads(model: AnyModel) -> str:
+    """What goes into a model, for a message."""
+    if _reads_pixels(model):
+        return "single pixels"
+    return "a pixel's neighbours" if _reads_neighbours(model) else "features"
+
+
 TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
@@ -143,8 +150,8 @@ def target_for(model: AnyModel, name: str | None) -> Target:
         return fitting[0]
     if TARGETS[name] not in fitting:
         raise InputError(
-            f"the model cannot be compiled to target {name}",
-            value=model.kind,
+            f"the model reads {_reads(model)}",
+            value=f"target {name}",
             hint=f"choose {' or '.join(target.name for target in fitting)}, or another model",
         )
     return TARGETS[name]

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from wnn2hdl.ir import TruthTable
+from wnn2hdl.ir import TruthTable, codes_to_bits
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit, Node
-from wnn2hdl.ir.nodes import Sum, Table
+from wnn2hdl.ir.nodes import ArgMax, Sum, Table
 from wnn2hdl.ir.wires import Slice, Word
 from wnn2hdl.minimise.support import members, minimum_supports, restrict
 
@@ -65,7 +65,11 @@ def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shar
                 seen[simple] = Slice(node.name)
                 nodes.append(_table(node, *simple))
         elif isinstance(node, Sum):
-            nodes.append(_sum(node, alias))
+            nodes.append(_sum(node, alias, Slice(port.name)))
+        elif isinstance(node, ArgMax):
+            widths = {net: width for other in nodes for net, width in other.drives.items()}
+            words = tuple((Slice(word[0].net, 0, widths[word[0].net]),) for word in node.words)
+            nodes.append(replace(node, words=words))
         else:
             nodes.append(node)
     return _without_unread(circuit, nodes)
@@ -110,8 +114,11 @@ def _table(node: Table, inputs: tuple[Slice, ...], packed: bytes) -> Table:
     return Table(node.name, inputs, function)
 
 
-def _sum(node: Sum, alias: dict[Slice, Bit]) -> Sum:
-    """Constants become an offset, and a bit that is added twice weighs twice."""
+def _sum(node: Sum, alias: dict[Slice, Bit], any_bit: Slice) -> Sum | Table:
+    """Constants become an offset, and a bit that is added twice weighs twice.
+
+    A sum of constants alone becomes a table that does not read its one input, ``any_bit``.
+    """
     weights: Counter[Slice] = Counter()
     offset = node.offset
     for bit, weight in zip(_bits(node.word), node.weights, strict=True):
@@ -120,6 +127,11 @@ def _sum(node: Sum, alias: dict[Slice, Bit]) -> Sum:
             offset += weight * found
         else:
             weights[found] += weight
+    if not weights:
+        width = max(offset.bit_length(), 1)
+        values = np.tile(codes_to_bits(offset, width), (2, 1))
+        names = tuple(f"sum{position}" for position in range(width))
+        return Table(node.name, (any_bit,), TruthTable.exact(("any",), names, values))
     return replace(node, word=tuple(weights), weights=tuple(weights.values()), offset=offset)
 
 
