@@ -48,7 +48,6 @@ def write_build() -> Callable[..., Path]:
     Model, design and networks are real; changes are those of the fields of `BuildReport`.
     """
     from wnn2hdl.build.design import Design
-    from wnn2hdl.build.reporting import model_figures
     from wnn2hdl.dataset import from_samples
     from wnn2hdl.edges import boundary
     from wnn2hdl.emit import write_manifest
@@ -56,7 +55,7 @@ def write_build() -> Callable[..., Path]:
     from wnn2hdl.files import write_json
     from wnn2hdl.lower.targets import TARGETS, Ingredients
     from wnn2hdl.minimise.circuit import minimise
-    from wnn2hdl.report import BuildReport, Care, PartFigures, Proof, report_dict
+    from wnn2hdl.report import BuildReport, Care, PartFigures, Proof, model_figures, report_dict
     from wnn2hdl.training.discriminators import train
 
     def silent(step: str, done: int, total: int) -> None:

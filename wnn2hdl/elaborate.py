@@ -154,6 +154,9 @@ def _sum(scope: _Scope, node: Sum) -> None:
         for power in range(weight.bit_length()):
             if weight >> power & 1:
                 columns.setdefault(power, []).append(bit)
+    for power in range(node.offset.bit_length()):
+        if node.offset >> power & 1:
+            columns.setdefault(power, []).append(Const(1, 1))
     total = add_columns(scope.m, columns, node.drives[node.name], name=node.name, platform=scope.platform)
     scope.nets[node.name] = Cat(*total)
 

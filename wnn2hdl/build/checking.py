@@ -64,7 +64,11 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     emitted = {part: Circuit((verilog,), design.module(part)) for part in design.parts}
     jobs: dict[str, Callable[[], Any]] = {
         **simulations.jobs,
-        "prove": partial(prove, design.specification, emitted),
+        "prove": partial(
+            prove,
+            design.specification,
+            {part: circuit for part, circuit in emitted.items() if part in design.specification.claims},
+        ),
         "synthesise": partial(synthesise_all, synthesis_jobs(design, files)),
     }
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
@@ -77,11 +81,11 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     vectors, mismatch = simulations.outcome(results)
     syntheses: dict[str, Synthesis] = results["synthesise"]
     mapped = prove_netlists(
-        design.specification,
         {
             part: (circuit, Circuit((syntheses[part].netlist_verilog,), circuit.top))
             for part, circuit in emitted.items()
         },
+        {part: circuit.widths for part, circuit in design.parts.items()},
     )
     failures = [
         mismatch,
@@ -123,8 +127,12 @@ class _Simulations:
     """The simulations of a design: remembered ones are left out, long ones get their own process."""
 
     def __init__(self, design: Design, files: Files, *, afresh: bool) -> None:
-        claims = {part: design.specification.claims[part] for part in design.parts}
-        stimuli = {part: claim.stimulus for part, claim in claims.items() if claim.stimulus is not None}
+        claims = design.specification.claims
+        stimuli = {
+            part: draw
+            for part in design.parts
+            if part in claims and (draw := claims[part].stimulus) is not None
+        }
         counts = {part: len(next(iter(draw().values()))) for part, draw in stimuli.items()}
         self.long = [part for part, count in counts.items() if count >= _MANY]
         self.keys = {part: remembered.simulation_key(design, part) for part in self.long}

@@ -28,15 +28,16 @@ def open_classifier(path: Path) -> PictureClassifier:
         raise InputError(f"the build failed: {reason}", value=path, hint="compile the model again")
     if path.is_dir():
         design = open_build(path)[0]
-        return replace(circuit_classifier(design), colours=familiar_colours(design.model))
+        return replace(circuit_classifier(design), colours=familiar_colours(design.picture_model))
     return model_classifier(WisardModel.load(path))
 
 
 def circuit_classifier(design: Design) -> PixelTable:
     """The classifier that a design's circuit is, cared for or not; it knows what is in its care set."""
-    model, care = design.model, design.care
+    care = design.care
     if care is None:
         raise InputError("a circuit without a classifier tells no classes", value=design.target.name)
+    model = design.picture_model
     # Three classes take two bits, so a circuit may answer a fourth where it is free: taken for the last one.
     answers = np.minimum(circuit_answers(design), len(model.classes) - 1).astype(np.uint8)
     cared = care.project(tuple(range(care.width)))

@@ -9,11 +9,11 @@ from typing import Any
 
 from wnn2hdl.build.checking import Checked, check
 from wnn2hdl.build.classifier import circuit_classifier
-from wnn2hdl.build.design import Design
+from wnn2hdl.build.design import Design, require_picture_model
 from wnn2hdl.build.emission import emit, generators
 from wnn2hdl.build.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
 from wnn2hdl.build.planning import CompileOptions, Plan, plan
-from wnn2hdl.build.reporting import command, evaluation, model_figures, sample_picture, write_page
+from wnn2hdl.build.reporting import command, evaluation, sample_picture, write_page
 from wnn2hdl.dataset import Dataset, from_masks
 from wnn2hdl.emit import write_manifest
 from wnn2hdl.errors import CheckError, InputError
@@ -21,8 +21,8 @@ from wnn2hdl.evaluation.accuracy import evaluate, require_same_classes
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.files import write_json, write_text
 from wnn2hdl.images import MaskFormat, Palette, write_png
-from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.identifiers import name_from, require_name
+from wnn2hdl.ir.models import AnyModel
 from wnn2hdl.progress import Progress
 from wnn2hdl.report import (
     BuildReport,
@@ -31,6 +31,7 @@ from wnn2hdl.report import (
     Minimised,
     PartFigures,
     Proof,
+    model_figures,
     report_dict,
     report_markdown,
 )
@@ -66,7 +67,7 @@ class _Clock:
 
 
 def compile_model(
-    model: WisardModel,
+    model: AnyModel,
     folder: Path,
     options: CompileOptions,
     progress: Progress,
@@ -76,7 +77,7 @@ def compile_model(
     The folder appears when all is written; where a check fails it holds a file `FAILED` that says why.
 
     Args:
-        model: a pixel model.
+        model: the model.
         folder: the build folder; an earlier build there is replaced.
         options: the user's choices.
         progress: told of every stage.
@@ -88,7 +89,7 @@ def compile_model(
     """
     test_set = _test_set(options)
     if test_set is not None:
-        require_same_classes(model.classes, test_set)
+        require_same_classes(require_picture_model(model).classes, test_set)
     name = require_name(options.name) if options.name else name_from(folder.resolve().name)
     clock = _Clock()
     with staged(folder) as staging:
@@ -155,7 +156,7 @@ def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _M
     if test_set is None or not design.target.classifies:
         return _Measured()
     circuit = evaluate(circuit_classifier(design), test_set, progress)
-    model = evaluate(model_classifier(design.model), test_set, progress)
+    model = evaluate(model_classifier(design.picture_model), test_set, progress)
     return _Measured(
         circuit.accuracy,
         model.accuracy,

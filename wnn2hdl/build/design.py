@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
-from wnn2hdl.ir import EdgeFilter, LutNetwork, Style, WisardModel
+from wnn2hdl.ir import EdgeFilter, LutNetwork, PictureEncoder, Style, WisardModel
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
 from wnn2hdl.ir.identifiers import require_name, require_unreserved
+from wnn2hdl.ir.models import AnyModel, load_model
 from wnn2hdl.ir.verilog_text import check_comment
 from wnn2hdl.lower.targets import TARGETS, Target
 from wnn2hdl.verify.specification import Specification
@@ -27,6 +28,13 @@ MODEL_FILE = "model.json"
 DESIGN_FILE = "design.json"
 FORMAT = "wnn2hdl-design"
 VERSION = 2
+
+
+def require_picture_model(model: AnyModel) -> WisardModel:
+    """A model that reads pictures, as it is given; raises InputError for all others."""
+    if isinstance(model, WisardModel) and isinstance(model.encoder, PictureEncoder):
+        return model
+    raise InputError("the model does not read pictures", value=model.kind, hint="use one trained on images")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +52,7 @@ class Design:
         header: lines of the comment at the top of the Verilog.
     """
 
-    model: WisardModel
+    model: AnyModel
     edges: EdgeFilter | None
     circuit: Circuit
     target: Target
@@ -57,6 +65,11 @@ class Design:
     def specification(self) -> Specification:
         """What every circuit of the design has to compute, stated by the model."""
         return specify(self.model, self.edges, care_sets(self.circuit))
+
+    @property
+    def picture_model(self) -> WisardModel:
+        """The model, of a design that classifies pictures; raises InputError for all others."""
+        return require_picture_model(self.model)
 
     @property
     def parts(self) -> dict[str, Circuit]:
@@ -78,7 +91,7 @@ class Design:
         if not self.target.classifies:
             return None
         sets = care_sets(self.circuit)
-        return sets["neighbourhood" if self.target.of_neighbours else "pixel"]
+        return sets.get("neighbourhood") or sets["pixel"]
 
     def module(self, part: str) -> str:
         """The Verilog module of a circuit."""
@@ -138,7 +151,7 @@ class Design:
         Raises:
             ModelFileError: a file is missing or damaged, or they belong to different builds.
         """
-        model = WisardModel.load(folder / MODEL_FILE)
+        model = load_model(folder / MODEL_FILE)
         path = folder / DESIGN_FILE
         data = read_json(path, "a design")
         if data.get("format") != FORMAT or data.get("version") != VERSION:
@@ -177,14 +190,13 @@ class Design:
         for line in self.header:
             check_comment(line)
         claims = self.specification.claims
-        unknown = self.parts.keys() - claims.keys()
-        if unknown:
-            raise ValueError(f"nothing is known about the circuits {', '.join(sorted(unknown))}")
+        if self.circuit.name not in claims:
+            raise ValueError(f"nothing is known about the circuit {self.circuit.name}")
         for name, part in self.parts.items():
             require_unreserved(self.module(name))
-            ports = {port.name: port.width for port in part.inputs}, {x.name: x.width for x in part.outputs}
-            if ports != (claims[name].inputs, claims[name].outputs):
-                raise ValueError(f"{name} has the ports {ports}")
+            # A circuit without a claim of its own is proved as a part of one that has one.
+            if name in claims and part.widths != (claims[name].inputs, claims[name].outputs):
+                raise ValueError(f"{name} has the ports {part.widths}")
             if part.latency:
                 raise ValueError(f"{name} answers {part.latency} cycles late")
         for name, table in self.circuit.tables().items():

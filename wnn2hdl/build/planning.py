@@ -10,8 +10,10 @@ from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
 from wnn2hdl.edges import RULES, Agreement, from_file
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, Style, WisardModel
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, PictureEncoder, Style, WisardModel
 from wnn2hdl.ir.care import CareSet, Codes
+from wnn2hdl.ir.features import FixedPoint, Thermometer
+from wnn2hdl.ir.models import AnyModel, LogicModel
 from wnn2hdl.lower.table import care_set
 from wnn2hdl.lower.targets import Ingredients, target_for
 from wnn2hdl.minimise import Minimised
@@ -27,6 +29,8 @@ class CompileOptions:
     Attributes:
         target: what the model is compiled to; None for the first that it can be.
         name: what the names of all Verilog modules begin with; None makes it from the name of the folder.
+        input: format of the words that a network reads as features, as in ``Q3.12`` (a sign bit, 3 whole and
+            12 fraction bits) or ``UQ8.0`` (without a sign); None for what the model states.
         mode: equal to the model on every input, or on the care set.
         care: folder of the imagery that makes the care set; needed in domain mode.
         care_minimum: how often a code must occur in it to be cared for.
@@ -46,6 +50,7 @@ class CompileOptions:
 
     target: str | None = None
     name: str | None = None
+    input: str | None = None
     mode: Mode = "exact"
     care: Path | None = None
     care_minimum: int = 1
@@ -94,7 +99,7 @@ class Plan:
     left_out: float | None
 
 
-def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progress) -> Plan:
+def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress) -> Plan:
     """Decide everything about a circuit but its text.
 
     Args:
@@ -107,10 +112,16 @@ def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progr
         InputError: the model reads no pixels, or imagery is needed and missing or unusable.
         CheckError: a minimised table differs from the model.
     """
+    if options.input is not None:
+        model = with_input(model, options.input)
     target = target_for(model, options.target)
-    edges = _edge_filter(model, options, progress) if target.has_edges else None
-    seen = survey(model, _care_imagery(options), progress) if options.mode == "domain" else None
-    care = _care_sets(model, options, seen) if seen is not None else None
+    edges, care, seen = None, None, None
+    if isinstance(model, WisardModel) and isinstance(model.encoder, PictureEncoder):
+        edges = _edge_filter(model, options, progress) if target.has_edges else None
+        seen = survey(model, _care_imagery(options), progress) if options.mode == "domain" else None
+        care = _care_sets(model, options, seen) if seen is not None else None
+    elif options.mode == "domain":
+        raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
     minimised = minimise(target.lower(Ingredients(model, edges, care)), options.effort, progress)
     design = Design(
         model,
@@ -125,10 +136,26 @@ def plan(model: WisardModel, name: str, options: CompileOptions, progress: Progr
     design = replace(design, header=design.made_by(options.effort, generators()))
     design.check()
     imagery, agreement = options.imagery, None
-    if imagery and edges is not None:
+    if imagery and edges is not None and isinstance(model, WisardModel):
         agreement = edge_agreement(edges, model, Imagery(imagery, options.reading), progress)
     left_out = None if seen is None else seen.left_out
     return Plan(design, minimised.covers, minimised.methods, agreement, left_out)
+
+
+def with_input(model: AnyModel, words: str) -> AnyModel:
+    """A model of features that reads words of a format.
+
+    Raises:
+        InputError: there is no such format, or the model's features are no numbers.
+    """
+    encoder = None if isinstance(model, LogicModel) else model.encoder
+    if isinstance(model, LogicModel) or not isinstance(encoder, Thermometer):
+        raise InputError("the model reads no numbers, so their format is of no use", value=f"--input {words}")
+    try:
+        narrowed = replace(encoder, input=FixedPoint.parse(words))
+    except ValueError as error:
+        raise InputError("not a format of words", value=words, hint="write Q3.12 or UQ8.0") from error
+    return replace(model, encoder=narrowed)
 
 
 def _care_sets(model: WisardModel, options: CompileOptions, seen: Survey) -> dict[str, CareSet]:

@@ -23,8 +23,8 @@ from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.files import read_json, write_text
 from wnn2hdl.images import Palette, png_bytes, read_rgb, spoken_codes
-from wnn2hdl.ir import Neighbourhood, WisardModel, window_codes
-from wnn2hdl.report import Entry, ModelFigures, Picture, build_page, check_report, percent
+from wnn2hdl.ir import Neighbourhood, window_codes
+from wnn2hdl.report import Entry, Picture, build_page, check_report, percent
 from wnn2hdl.samples import landscape
 
 SAMPLE_SIDE = 256
@@ -58,13 +58,13 @@ def page(design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8]) -
         report: the object of its `report.json`.
         sample: a picture to show through the circuit, uint8 ``[height, width, 3]``.
     """
-    palette = Palette.of(design.model.classes)
-    colours = palette.to_json()
-    pictures = _pictures(design, sample, palette)
-    encoder = design.model.encoder
-    window = encoder if isinstance(encoder, Neighbourhood) else None
-    legend = tuple(colours.items()) if pictures else ()
-    return build_page(report, design.networks, pictures, legend, window)
+    if not (design.target.classifies or design.target.has_edges):
+        return build_page(report, design.networks)
+    model = design.picture_model
+    palette = Palette.of(model.classes)
+    window = model.encoder if isinstance(model.encoder, Neighbourhood) else None
+    legend = tuple(palette.to_json().items())
+    return build_page(report, design.networks, _pictures(design, sample, palette), legend, window)
 
 
 def write_page(folder: Path) -> Path:
@@ -133,19 +133,6 @@ def _require_utf8(folder: Path) -> None:
         raise InputError("the name of a folder is no UTF-8", value=shown, hint="rename it")
 
 
-def model_figures(model: WisardModel) -> ModelFigures:
-    """What a report tells of a model."""
-    return ModelFigures(
-        classes=model.classes,
-        address_bits=model.address_bits,
-        rams=model.rams,
-        bits=model.encoder.names,
-        bleaching=model.bleaching,
-        saturation=tuple(tuple(row) for row in model.saturation.tolist()),
-        training=model.training,
-    )
-
-
 def command(name: str, options: CompileOptions) -> str:
     """The command that compiles a build's model again, as a shell takes it, without options of no effect.
 
@@ -187,10 +174,10 @@ def _word(option: str, value: Any) -> str:
 
 
 def _pictures(design: Design, sample: NDArray[np.uint8], palette: Palette) -> tuple[Picture, ...]:
-    if not (design.target.classifies or design.target.has_edges):
-        return ()
     given = "" if design.target.classifies else ", as the edge filter is given it"
-    classifier = circuit_classifier(design) if design.target.classifies else model_classifier(design.model)
+    classifier = (
+        circuit_classifier(design) if design.target.classifies else model_classifier(design.picture_model)
+    )
     labels = classifier.classify(with_halo(sample, classifier.halo))
     # Outside of its care set a circuit of several outputs may name a class that does not exist.
     labels = np.minimum(labels, np.uint8(len(palette.names) - 1))

@@ -14,6 +14,7 @@ from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.network import LutNetwork, Mux
 from wnn2hdl.lower.targets import Ingredients
+from wnn2hdl.report import model_figures
 from wnn2hdl.report.build_report import PUBLISHED
 from wnn2hdl.synth import OPTIONS, Synthesis, utilisation
 from wnn2hdl.verify.specify import care_sets
@@ -99,8 +100,7 @@ def false_statements(
     design: Design, report: Mapping[str, Any], syntheses: Mapping[str, Synthesis]
 ) -> list[str]:
     """What `report.json` says that is not so, one line each; what takes labelled pictures is left alone."""
-    classified = design.care is not None
-    care = design.cared["neighbourhood" if design.target.of_neighbours else "pixel"] if classified else None
+    care = None if design.care is None else design.care.project(tuple(range(design.care.width)))
     edges = design.edges
     found = {
         "target": design.target.name,
@@ -123,12 +123,7 @@ def false_statements(
         },
         "proof": {"status": "proved"},
         "model": {
-            "classes": design.model.classes,
-            "address_bits": design.model.address_bits,
-            "rams": design.model.rams,
-            "bits": design.model.encoder.names,
-            "bleaching": design.model.bleaching,
-            "saturation": design.model.saturation.tolist(),
+            name: value for name, value in asdict(model_figures(design.model)).items() if name != "training"
         },
         "options": {"style": design.style, "name": design.name, "mode": design.mode},
         "hashes": {"model": design.model.digest()},

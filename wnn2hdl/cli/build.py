@@ -13,7 +13,8 @@ from wnn2hdl.cli.options import file, folder
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.cli.pictures import alpha_option, bands_option, ignore_option, palette_option, scale_option
 from wnn2hdl.errors import CheckError
-from wnn2hdl.ir import Style, WisardModel
+from wnn2hdl.ir import Style
+from wnn2hdl.ir.models import load_model
 from wnn2hdl.lower.targets import TARGETS
 
 
@@ -28,6 +29,11 @@ from wnn2hdl.lower.targets import TARGETS
 @click.option(
     "--name",
     help="What the names of all Verilog modules begin with.  [default: the name of the build folder]",
+)
+@click.option(
+    "--input",
+    metavar="Q3.12",
+    help="Format of the features that a network reads: whole and fraction bits.  [default: the model's]",
 )
 @click.option(
     "--mode",
@@ -102,7 +108,7 @@ def compile_command(
     """
     options = CompileOptions(care_minimum=choices.pop("care_min"), **choices)
     with progress() as report:
-        build = compile_model(WisardModel.load(model), output, options, report)
+        build = compile_model(load_model(model), output, options, report)
     lines = [parts_table(build.report, build.folder)]
     for pictures, share in build.report["options"]["left_out"].items():
         if share:

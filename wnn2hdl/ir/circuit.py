@@ -85,6 +85,13 @@ class Circuit:
         """The output ports."""
         return tuple(Port(name, width_of(word)) for name, word in self.drivers.items())
 
+    @property
+    def widths(self) -> tuple[dict[str, int], dict[str, int]]:
+        """Bits of each input port and of each output port, by name."""
+        return {port.name: port.width for port in self.inputs}, {
+            port.name: port.width for port in self.outputs
+        }
+
     @cached_property
     def latency(self) -> int:
         """Cycles from inputs to outputs; 0 if the circuit is combinational.

@@ -1,6 +1,7 @@
 """Encoders of feature vectors: thermometers, words taken as they are, and the numbers hardware reads."""
 
 import math
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -14,6 +15,8 @@ MAX_WORD_BITS = 48
 """The widest fixed-point word; a float64 holds each of its values exactly."""
 
 MAX_FRACTION_BITS = 64
+
+_NOTATION = re.compile(r"(U?)Q(\d{1,2})\.(\d{1,2})", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,20 @@ class FixedPoint:
         exact = Fraction(threshold) * (1 << self.fraction)
         word = math.floor(exact) + 1 if strict else math.ceil(exact)
         return min(max(word, self.lowest), self.highest + 1)
+
+    def __str__(self) -> str:
+        """As engineers write it: ``Q3.12`` with a sign bit, ``UQ8.0`` without."""
+        whole = self.bits - self.fraction - self.signed
+        return f"{'' if self.signed else 'U'}Q{whole}.{self.fraction}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """The inverse of ``str``; raises ValueError on anything else."""
+        match = _NOTATION.fullmatch(text)
+        if match is None:
+            raise ValueError(f"{text!r} is no format of words, as Q3.12 or UQ8.0")
+        signed, whole, fraction = not match[1], int(match[2]), int(match[3])
+        return cls(whole + fraction + signed, fraction, signed)
 
     def to_json(self) -> dict[str, Any]:
         """A JSON object, read back by `from_json`."""

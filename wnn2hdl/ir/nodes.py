@@ -98,24 +98,28 @@ class Threshold:
 
 @dataclass(frozen=True)
 class Sum:
-    """The number of set bits of a word, or the sum of the weights of its set bits.
+    """The number of set bits of a word, or the sum of the weights of its set bits, and a constant.
 
     Attributes:
         name: of the node and of the net it drives, as many bits as the largest sum needs.
-        word: the bits that are added.
+        word: the bits that are added, at least one.
         weights: of each bit, at least 1; all of them 1 if left out.
+        offset: is added to every sum, at least 0.
     """
 
     kind: ClassVar[str] = "sum"
     name: str
     word: Word
     weights: tuple[int, ...] = field(default=())
+    offset: int = 0
 
     def __post_init__(self) -> None:
         if not self.weights:
             object.__setattr__(self, "weights", (1,) * width_of(self.word))
-        if len(self.weights) != width_of(self.word) or min(self.weights) < 1:
+        if not self.word or len(self.weights) != width_of(self.word) or min(self.weights) < 1:
             raise ValueError(f"{self.name} adds {width_of(self.word)} bits with the weights {self.weights}")
+        if self.offset < 0:
+            raise ValueError(f"{self.name} adds the constant {self.offset}")
 
     @property
     def reads(self) -> tuple[Word, ...]:
@@ -125,7 +129,7 @@ class Sum:
     @property
     def drives(self) -> Mapping[str, int]:
         """See `Table.drives`."""
-        return {self.name: sum(self.weights).bit_length()}
+        return {self.name: (sum(self.weights) + self.offset).bit_length()}
 
     @property
     def latency(self) -> int:
@@ -134,7 +138,7 @@ class Sum:
 
     def evaluate(self, values: tuple[Bits, ...]) -> dict[str, Bits]:
         """See `Table.evaluate`."""
-        total = values[0] @ np.array(self.weights, dtype=np.int64)
+        total = values[0] @ np.array(self.weights, dtype=np.int64) + self.offset
         return {self.name: codes_to_bits(total, self.drives[self.name])}
 
 

@@ -4,10 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WINDOW_BITS, EdgeFilter, Neighbourhood, WisardModel
+from wnn2hdl.ir import WINDOW_BITS, BitSelect, EdgeFilter, Neighbourhood, Thermometer, WisardModel, Words
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.lower import deforestation
+from wnn2hdl.ir.models import AnyModel
+from wnn2hdl.lower import deforestation, structural
+from wnn2hdl.lower.structural import VotingModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +22,7 @@ class Ingredients:
         care: the care sets of circuits by name; where one is missing, everything matters.
     """
 
-    model: WisardModel
+    model: AnyModel
     edges: EdgeFilter | None = None
     care: Mapping[str, CareSet] | None = None
 
@@ -37,21 +39,22 @@ class Target:
         name: as the command line has it.
         description: what the circuit is, for people.
         lower: makes the circuit.
+        fits: whether a model can be compiled to it.
         has_edges: whether the circuit contains the edge filter.
         classifies: whether it answers with classes of pixels.
-        of_neighbours: whether it is made of models that look at a pixel's neighbours.
     """
 
     name: str
     description: str
     lower: Callable[[Ingredients], Circuit]
+    fits: Callable[[AnyModel], bool]
     has_edges: bool = False
     classifies: bool = True
-    of_neighbours: bool = False
 
 
 def _pixel(of: Ingredients) -> Circuit:
-    return deforestation.pixel(of.model, of.cared("pixel", of.model.encoder.width))
+    model = _wisard(of)
+    return deforestation.pixel(model, of.cared("pixel", model.encoder.width))
 
 
 def _edge(of: Ingredients) -> Circuit:
@@ -65,44 +68,89 @@ def _block(of: Ingredients) -> Circuit:
 
 
 def _neighbourhood(of: Ingredients) -> Circuit:
-    encoder = of.model.encoder
+    model = _wisard(of)
+    encoder = model.encoder
     assert isinstance(encoder, Neighbourhood)
-    return deforestation.neighbourhood(of.model, encoder, of.cared("neighbourhood", encoder.width))
+    return deforestation.neighbourhood(model, encoder, of.cared("neighbourhood", encoder.width))
+
+
+def _network(of: Ingredients) -> Circuit:
+    assert isinstance(of.model, VotingModel)
+    return structural.network(of.model)
+
+
+def _wisard(of: Ingredients) -> WisardModel:
+    assert isinstance(of.model, WisardModel)
+    return of.model
+
+
+def _reads_pixels(model: AnyModel) -> bool:
+    return isinstance(model, WisardModel) and isinstance(model.encoder, BitSelect)
+
+
+def _reads_neighbours(model: AnyModel) -> bool:
+    return isinstance(model, WisardModel) and isinstance(model.encoder, Neighbourhood)
+
+
+def _votes_on_features(model: AnyModel) -> bool:
+    return isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words)
+
+
+def _reads(model: AnyModel) -> str:
+    """What goes into a model, for a message."""
+    if _reads_pixels(model):
+        return "single pixels"
+    return "a pixel's neighbours" if _reads_neighbours(model) else "features"
 
 
 TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
-        Target("block", "Nine pixel classifiers and an edge filter", _block, has_edges=True),
-        Target("pixel", "A pixel classifier", _pixel),
-        Target("edge", "An edge filter", _edge, has_edges=True, classifies=False),
+        Target("block", "Nine pixel classifiers and an edge filter", _block, _reads_pixels, has_edges=True),
+        Target("pixel", "A pixel classifier", _pixel, _reads_pixels),
+        Target("edge", "An edge filter", _edge, _reads_pixels, has_edges=True, classifies=False),
         Target(
-            "match", "A nine-bit match-and-count circuit", lambda _: deforestation.match(), classifies=False
+            "match",
+            "A nine-bit match-and-count circuit",
+            lambda _: deforestation.match(),
+            _reads_pixels,
+            classifies=False,
         ),
         Target(
             "neighbourhood",
             "A classifier of a pixel that looks at its neighbours",
             _neighbourhood,
-            of_neighbours=True,
+            _reads_neighbours,
+        ),
+        Target(
+            "network",
+            "A whole network: encoder, tables, votes and winner",
+            _network,
+            _votes_on_features,
+            classifies=False,
         ),
     )
 }
 
 
-def target_for(model: WisardModel, name: str | None) -> Target:
+def target_for(model: AnyModel, name: str | None) -> Target:
     """The target of that name, or the first one that the model can be compiled to.
 
     Raises:
-        InputError: the model cannot be compiled to this target.
+        InputError: the model cannot be compiled to this target, or to any.
     """
-    neighbours = isinstance(model.encoder, Neighbourhood)
-    fitting = [target for target in TARGETS.values() if target.of_neighbours == neighbours]
+    fitting = [target for target in TARGETS.values() if target.fits(model)]
+    if not fitting:
+        raise InputError(
+            "models of this kind are not compiled to circuits yet",
+            value=model.kind,
+            hint="see docs/limits.md for those that are",
+        )
     if name is None:
         return fitting[0]
     if TARGETS[name] not in fitting:
-        looks = "looks at a pixel's neighbours" if neighbours else "does not look at a pixel's neighbours"
         raise InputError(
-            f"the model {looks}",
+            f"the model reads {_reads(model)}",
             value=f"target {name}",
             hint=f"choose {' or '.join(target.name for target in fitting)}, or another model",
         )

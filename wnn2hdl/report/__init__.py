@@ -18,6 +18,7 @@ from wnn2hdl.report.gate import Check, Limits, run_gate
 from wnn2hdl.report.gate_formats import gate_json, gate_junit, gate_markdown
 from wnn2hdl.report.index_page import Entry, Exhibit, index_page, is_index
 from wnn2hdl.report.markdown import report_markdown
+from wnn2hdl.report.model_figures import model_figures
 from wnn2hdl.report.page import Picture, build_page, percent
 from wnn2hdl.report.schemas import check_report
 
@@ -45,6 +46,7 @@ __all__ = [
     "gate_markdown",
     "index_page",
     "is_index",
+    "model_figures",
     "percent",
     "read_baseline",
     "report_dict",

@@ -32,6 +32,9 @@ from wnn2hdl.verify.specification import Claim, Specification, show, value_bits,
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
 
+Widths = Mapping[str, int]
+"""Width of each port by name, in bits."""
+
 _SECONDS = 600.0
 _HELD = "proof__held"
 
@@ -118,13 +121,13 @@ def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[
 
 
 def prove_netlists(
-    specification: Specification, netlists: Mapping[str, tuple[Circuit, Circuit]]
+    netlists: Mapping[str, tuple[Circuit, Circuit]], ports: Mapping[str, tuple[Widths, Widths]]
 ) -> dict[str, Proof]:
     """Prove mapped netlists equal to the Verilog they were mapped from, on every input.
 
     Args:
-        specification: for the ports.
         netlists: for each circuit the emitted Verilog and the netlist of 7-series cells.
+        ports: for each circuit the widths of its input and of its output ports, in bits.
 
     Returns, raises: as `prove`; what a counterexample expects is the emitted Verilog's answer.
     """
@@ -132,14 +135,11 @@ def prove_netlists(
     differences = find_differences(list(netlists.values()), timeout=_SECONDS)
     counterexamples: dict[str, Counterexample | None] = {}
     for (part, (source, netlist)), values in zip(netlists.items(), differences, strict=True):
-        claim = specification.claims[part]
-        counterexamples[part] = (
-            None
-            if values is None
-            else Counterexample(
-                part, values, _answers(claim, source, values), _answers(claim, netlist, values)
-            )
-        )
+        counterexamples[part] = None
+        if values is not None:
+            inputs, outputs = ports[part]
+            expected, actual = (evaluate(x, values, inputs, tuple(outputs)) for x in (source, netlist))
+            counterexamples[part] = Counterexample(part, values, expected, actual)
     seconds = time.perf_counter() - started
     return {part: Proof(METHOD, seconds, found) for part, found in counterexamples.items()}
 

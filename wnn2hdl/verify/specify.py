@@ -2,15 +2,18 @@
 
 from collections.abc import Mapping
 
-from wnn2hdl.ir import EdgeFilter, Neighbourhood, WisardModel
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import EdgeFilter, Neighbourhood, Thermometer, WisardModel, Words
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.models import AnyModel
 from wnn2hdl.verify.block import block_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
+from wnn2hdl.verify.network import VotingModel, network_specification
 from wnn2hdl.verify.specification import Specification
 
 
-def specify(model: WisardModel, edges: EdgeFilter | None, care: Mapping[str, CareSet]) -> Specification:
+def specify(model: AnyModel, edges: EdgeFilter | None, care: Mapping[str, CareSet]) -> Specification:
     """What the circuits made from a model have to compute.
 
     Args:
@@ -21,6 +24,10 @@ def specify(model: WisardModel, edges: EdgeFilter | None, care: Mapping[str, Car
     Raises:
         InputError: the model reads no pixels, or a care set is empty.
     """
+    if isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words):
+        return network_specification(model)
+    if not isinstance(model, WisardModel):
+        raise InputError("models of this kind are not proved yet", value=model.kind)
     if isinstance(model.encoder, Neighbourhood):
         return neighbourhood_specification(model, model.encoder, care)
     return block_specification(model, edges, care)

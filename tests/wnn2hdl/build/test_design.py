@@ -76,7 +76,7 @@ def foreign(data: dict[str, Any]) -> None:
         (lost, "the design is damaged"),
         (beyond, "the design is damaged"),
         (twisted, "the design is damaged"),
-        (unknown, "nothing is known about the circuits sobel"),
+        (unknown, "nothing is known about the circuit sobel"),
         (exact, "pixel has don't-cares in exact mode"),
         (commented, "is no line of a comment"),
         (newer, "not a design of this wnn2hdl"),

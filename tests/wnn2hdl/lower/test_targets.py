@@ -31,7 +31,8 @@ def model(encoder: BitSelect | Neighbourhood) -> WisardModel:
 )
 def test_each_target_makes_its_circuit(name: str, circuit: str) -> None:
     target = TARGETS[name]
-    encoder = Neighbourhood(3, TAPS) if target.of_neighbours else PIXEL
+    encoder = Neighbourhood(3, TAPS) if name == "neighbourhood" else PIXEL
+    assert target.fits(model(encoder))
     made = target.lower(Ingredients(model(encoder), EDGES))
     assert made.name == circuit
     assert ("edge" in made.definitions()) == target.has_edges
@@ -53,8 +54,8 @@ def test_without_a_name_the_first_fitting_target_is_taken() -> None:
 
 
 def test_a_target_of_another_kind_of_model_is_refused() -> None:
-    line = "the model looks at a pixel's neighbours: target pixel; choose neighbourhood, or another model"
+    line = "the model reads a pixel's neighbours: target pixel; choose neighbourhood, or another model"
     with pytest.raises(InputError, match=line):
         target_for(model(Neighbourhood(3, TAPS)), "pixel")
-    with pytest.raises(InputError, match="does not look at a pixel's neighbours: target neighbourhood"):
+    with pytest.raises(InputError, match="the model reads single pixels: target neighbourhood"):
         target_for(model(PIXEL), "neighbourhood")

@@ -172,11 +172,13 @@ def test_the_mapped_netlist_is_proved_equal_and_one_flipped_init_bit_found(circu
     source = circuits.circuit(block, "edge")
     netlist = circuits.mapped(source)
     (text,) = netlist.sources
-    assert prove_netlists(specification, {"edge": (source, netlist)})["edge"].status == "proved"
+    claim = specification.claims["edge"]
+    ports = {"edge": (claim.inputs, claim.outputs)}
+    assert prove_netlists({"edge": (source, netlist)}, ports)["edge"].status == "proved"
     start = text.index("'h", text.index("INIT(")) + 2
     wrong = f"{text[:start]}{int(text[start], 16) ^ 1:x}{text[start + 1 :]}"
     netlist = circuits.as_circuit("edge", wrong)
-    found = prove_netlists(specification, {"edge": (source, netlist)})["edge"].counterexample
+    found = prove_netlists({"edge": (source, netlist)}, ports)["edge"].counterexample
     assert found is not None
     assert found.actual["edge_bit"] != found.expected["edge_bit"]
 

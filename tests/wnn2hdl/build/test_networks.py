@@ -1,0 +1,53 @@
+"""Networks of features become builds like all others."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.small_networks import lut_network
+from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.planning import CompileOptions, with_input
+from wnn2hdl.build.verification import verify_build
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.models import LogicModel, LutGroupModel
+
+
+def silent(step: str, done: int, total: int) -> None:
+    pass
+
+
+@pytest.mark.slow
+def test_a_network_is_built_proved_and_verified(tmp_path: Path) -> None:
+    folder = tmp_path / "net"
+    built = compile_model(lut_network(2), folder, CompileOptions(input="Q2.4"), silent)
+    assert built.failure is None
+    report = json.loads((folder / "report.json").read_text())
+    assert set(report["parts"]) == {"encoder", "core", "network", "sobel"}
+    assert report["proof"]["status"] == "proved"
+    assert report["options"]["simulated_vectors"] == {"network": 10_240}
+    assert (folder / "net.v").read_text().count("module net_") >= 3
+    assert verify_build(folder, silent)[0] == []
+
+
+def test_the_words_of_a_model_can_be_narrowed() -> None:
+    narrowed = with_input(lut_network(2), "UQ3.1")
+    assert isinstance(narrowed, LutGroupModel)
+    assert narrowed.encoder.input == FixedPoint(4, 1, signed=False)  # type: ignore[union-attr]
+
+
+def test_a_format_that_means_nothing_is_refused() -> None:
+    with pytest.raises(InputError, match=r"not a format of words: 16; write Q3\.12 or UQ8\.0"):
+        with_input(lut_network(2), "16")
+    gates = LogicModel(("a",), ("b",), np.zeros((0, 2), np.uint32), np.array([2], np.uint32))
+    with pytest.raises(InputError, match="the model reads no numbers"):
+        with_input(gates, "Q3.12")
+
+
+def test_what_cannot_be_compiled_yet_is_refused_at_once(tmp_path: Path) -> None:
+    gates = LogicModel(("a",), ("b",), np.zeros((0, 2), np.uint32), np.array([2], np.uint32))
+    with pytest.raises(InputError, match="models of this kind are not compiled to circuits yet: logic"):
+        compile_model(gates, tmp_path / "x", CompileOptions(), silent)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,69 @@
+"""The reference of a whole network is its model, and refutes what is not."""
+
+import numpy as np
+import pytest
+
+from tests.small_networks import lut_network, wisard
+from wnn2hdl.elaborate import component
+from wnn2hdl.emit import verilog
+from wnn2hdl.lower.structural import VotingModel, network
+from wnn2hdl.minimise.circuit import minimise
+from wnn2hdl.verify.equivalence import Circuit, evaluate
+from wnn2hdl.verify.network import network_specification
+from wnn2hdl.verify.proof import prove
+from wnn2hdl.verify.specification import word_values
+
+
+def silent(step: str, done: int, total: int) -> None:
+    pass
+
+
+def emitted(model: VotingModel) -> str:
+    circuit = minimise(network(model), 0, silent).circuit
+    return verilog(component(circuit, style="cells"), prefix="x_", header=[])
+
+
+@pytest.mark.parametrize("model", [lut_network(3), wisard(3), wisard(4, ties="first")])
+def test_the_reference_is_the_model(model: VotingModel) -> None:
+    specification = network_specification(model)
+    claim = specification.claims["network"]
+    assert claim.stimulus is not None
+    inputs = {port: bits[:: len(bits) // 5] for port, bits in claim.stimulus().items()}
+    expected = word_values(claim.answers(inputs)["class_bits"])
+    reference = Circuit((specification.reference,), claim.module)
+    for sample, answer in zip(word_values(inputs["features"]), expected, strict=True):
+        found = evaluate(reference, {"features": sample}, claim.inputs, ("class_bits",))
+        assert found == {"class_bits": answer}
+
+
+def test_every_threshold_is_looked_at_from_both_sides() -> None:
+    model = lut_network(5)
+    claim = network_specification(model).claims["network"]
+    assert claim.stimulus is not None
+    bits = model.encoder.bits_of_words(words_of(claim.stimulus()["features"]))
+    constant = bits.all(axis=0) | ~bits.any(axis=0)
+    beyond = [
+        not model.encoder.input.lowest < level <= model.encoder.input.highest  # type: ignore[union-attr]
+        for levels in model.encoder.levels  # type: ignore[union-attr]
+        for level in levels
+    ]
+    assert constant.tolist() == beyond
+
+
+def words_of(features: np.ndarray) -> np.ndarray:
+    digits = features.reshape(len(features), -1, 6).astype(np.int64)
+    return digits @ np.array([1, 2, 4, 8, 16, -32])
+
+
+@pytest.mark.slow
+def test_a_network_is_proved_and_a_wrong_one_refuted() -> None:
+    model = lut_network(7, layers=(10, 6))
+    text = emitted(model)
+    specification = network_specification(model)
+    proof = prove(specification, {"network": Circuit((text,), "x_network")})["network"]
+    assert proof.status == "proved"
+    place = text.index("'h", text.index(".INIT")) + 2
+    spoiled = text[:place] + format(int(text[place], 16) ^ 15, "x") + text[place + 1 :]
+    found = prove(specification, {"network": Circuit((spoiled,), "x_network")})["network"].counterexample
+    assert found is not None
+    assert found.expected != found.actual

@@ -1,0 +1,167 @@
+"""Sharing and dropping: tables lose inputs that do not matter, equal tables become one, constants go.
+
+Inputs that cannot occur, such as a thermometer with a hole, are don't-cares here even where a circuit has to
+equal its model on every input.
+"""
+
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from wnn2hdl.ir import TruthTable, codes_to_bits
+from wnn2hdl.ir.care import CareSet
+from wnn2hdl.ir.circuit import Circuit, Node
+from wnn2hdl.ir.nodes import ArgMax, Sum, Table
+from wnn2hdl.ir.wires import Slice, Word
+from wnn2hdl.minimise.support import members, minimum_supports, restrict
+
+Bit = Slice | bool
+"""What a bit turned out to be: a bit of a net, or a constant."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shared:
+    """A circuit after sharing.
+
+    Attributes:
+        circuit: reads of its one input port only what is left.
+        read: which bits of the port of the circuit before these are, ascending.
+        tables_before: tables before sharing.
+    """
+
+    circuit: Circuit
+    read: tuple[int, ...]
+    tables_before: int
+
+
+def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shared:
+    """Simplify a circuit of tables of one output, sums and further nodes over one input port.
+
+    Args:
+        circuit: its tables are truth tables.
+        care: what can occur on the port.
+        known: bits of the port that are constant, or equal to another bit of it.
+    """
+    (port,) = circuit.inputs
+    alias: dict[Slice, Bit] = {}
+    for position, value in known.items():
+        alias[Slice(port.name, position)] = value if isinstance(value, bool) else Slice(port.name, value)
+    seen: dict[tuple[tuple[Slice, ...], bytes], Slice] = {}
+    nodes: list[Node] = []
+    for node in circuit.nodes:
+        if (
+            isinstance(node, Table)
+            and isinstance(node.function, TruthTable)
+            and len(node.function.outputs) == 1
+        ):
+            bits = [alias.get(bit, bit) for bit in _bits(node.word)]
+            simple = _simplified(bits, node.function, port.name, care)
+            if not isinstance(simple, tuple):
+                alias[Slice(node.name)] = simple
+            elif simple in seen:
+                alias[Slice(node.name)] = seen[simple]
+            else:
+                seen[simple] = Slice(node.name)
+                nodes.append(_table(node, *simple))
+        elif isinstance(node, Sum):
+            nodes.append(_sum(node, alias, Slice(port.name)))
+        elif isinstance(node, ArgMax):
+            widths = {net: width for other in nodes for net, width in other.drives.items()}
+            words = tuple((Slice(word[0].net, 0, widths[word[0].net]),) for word in node.words)
+            nodes.append(replace(node, words=words))
+        else:
+            nodes.append(node)
+    return _without_unread(circuit, nodes)
+
+
+def _simplified(
+    bits: list[Bit], function: TruthTable, port: str, care: CareSet
+) -> Bit | tuple[tuple[Slice, ...], bytes]:
+    """A constant, a bit, or the different bits that a table reads and its contents."""
+    inputs = tuple(dict.fromkeys(bit for bit in bits if isinstance(bit, Slice)))
+    codes = np.arange(1 << len(inputs))
+    address = np.zeros(len(codes), dtype=np.int64)
+    for slot, bit in enumerate(bits):
+        value = np.full(len(codes), int(bit)) if isinstance(bit, bool) else codes >> inputs.index(bit) & 1
+        address |= value << slot
+    values = function.values[address, 0]
+    cared = function.care[address]
+    from_port = tuple(i for i, bit in enumerate(inputs) if bit.net == port)
+    allowed = care.project(tuple(inputs[i].low for i in from_port))
+    part = np.zeros(len(codes), dtype=np.int64)
+    for slot, i in enumerate(from_port):
+        part |= (codes >> i & 1) << slot
+    cared = cared & allowed[part]
+    on, off = values & cared, ~values & cared
+    if not off.any():
+        return True
+    if not on.any():
+        return False
+    support = minimum_supports(on, off)[0]
+    kept = tuple(inputs[position] for position in members(support))
+    on, off = restrict(on, support), restrict(off, support)
+    if len(kept) == 1 and on.tolist() == [False, True]:
+        return kept[0]
+    return kept, np.packbits(np.stack([on, off])).tobytes()
+
+
+def _table(node: Table, inputs: tuple[Slice, ...], packed: bytes) -> Table:
+    size = 1 << len(inputs)
+    flags = np.unpackbits(np.frombuffer(packed, np.uint8), count=2 * size).astype(np.bool_).reshape(2, size)
+    names = tuple(f"i{position}" for position in range(len(inputs)))
+    function = TruthTable(names, ("fires",), flags[0][:, np.newaxis], flags[0] | flags[1])
+    return Table(node.name, inputs, function)
+
+
+def _sum(node: Sum, alias: dict[Slice, Bit], any_bit: Slice) -> Sum | Table:
+    """Constants become an offset, and a bit that is added twice weighs twice.
+
+    A sum of constants alone becomes a table that does not read its one input, ``any_bit``.
+    """
+    weights: Counter[Slice] = Counter()
+    offset = node.offset
+    for bit, weight in zip(_bits(node.word), node.weights, strict=True):
+        found = alias.get(bit, bit)
+        if isinstance(found, bool):
+            offset += weight * found
+        else:
+            weights[found] += weight
+    if not weights:
+        width = max(offset.bit_length(), 1)
+        values = np.tile(codes_to_bits(offset, width), (2, 1))
+        names = tuple(f"sum{position}" for position in range(width))
+        return Table(node.name, (any_bit,), TruthTable.exact(("any",), names, values))
+    return replace(node, word=tuple(weights), weights=tuple(weights.values()), offset=offset)
+
+
+def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
+    """Nodes that lead to an output, and the bits of the port that they read."""
+    (port,) = circuit.inputs
+    needed = {bit.net for word in circuit.drivers.values() for bit in word}
+    kept: list[Node] = []
+    for node in reversed(nodes):
+        if needed & node.drives.keys():
+            kept.append(node)
+            needed |= {bit.net for word in node.reads for bit in word}
+    kept.reverse()
+    read = sorted(
+        {bit.low for node in kept for word in node.reads for bit in _bits(word) if bit.net == port.name}
+    )
+    place = {position: i for i, position in enumerate(read)}
+
+    def moved(word: Word) -> Word:
+        return tuple(Slice(bit.net, place[bit.low]) if bit.net == port.name else bit for bit in _bits(word))
+
+    moved_nodes = [
+        replace(node, word=moved(node.word)) if isinstance(node, Table | Sum) else node for node in kept
+    ]
+    result = replace(
+        circuit, inputs=(replace(port, width=max(len(read), 1)),), nodes=tuple(moved_nodes), care=()
+    )
+    tables = sum(isinstance(node, Table) for node in circuit.nodes)
+    return Shared(result, tuple(read), tables)
+
+
+def _bits(word: Word) -> list[Slice]:
+    return [Slice(part.net, part.low + i) for part in word for i in range(part.width)]
