@@ -16,6 +16,12 @@ def thermometer(seed: int, *, features: int = 3, thresholds: int = 4) -> Thermom
     return Thermometer(tuple(tuple(row) for row in levels.tolist()), strict=True, input=WORDS)
 
 
+def encoder_of(model: LutGroupModel | SparseWisardModel) -> Thermometer:
+    """The thermometer of a small network."""
+    assert isinstance(model.encoder, Thermometer)
+    return model.encoder
+
+
 def lut_network(seed: int, *, layers: tuple[int, ...] = (12,), classes: int = 3) -> LutGroupModel:
     """Layers of tables of three inputs; an input may repeat."""
     rng = np.random.default_rng(seed)

@@ -92,23 +92,23 @@ class ModelFigures:
 
     Attributes:
         classes: class names, the background first.
-        kind: as the model file has it.
         address_bits: n, of each RAM; None of a network without RAMs, as are the following.
         rams: k, of each discriminator.
         bits: names of the input bits of a model of pictures, code bit 0 first.
         bleaching: the threshold.
         saturation: for each class and RAM the share of its addresses that fire, 0 to 1.
         training: what the model file notes about its training.
+        kind: of the model, as its file has it.
     """
 
     classes: tuple[str, ...]
-    kind: str = "wisard"
     address_bits: int | None = None
     rams: int | None = None
     bits: tuple[str, ...] = ()
     bleaching: int | None = None
     saturation: tuple[tuple[float, ...], ...] = ()
     training: Mapping[str, Any] = field(default_factory=dict)
+    kind: str = "wisard"
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def test_an_answer_that_is_no_class_is_taken_for_the_last_one(build: Path) -> No
     design, _, _ = open_build(build)
     inputs = design.networks["pixel"].inputs
     nought_or_three = LutNetwork(inputs, (), (("class_bit0", inputs[0]), ("class_bit1", inputs[0])))
-    code = tuple(Slice("rgb", position) for position in pixel_encoder(design.model).pixel_positions)
+    code = tuple(Slice("rgb", position) for position in pixel_encoder(design.picture_model).pixel_positions)
     pixel = design.parts["pixel"]
     wrong = replace(
         pixel,
@@ -54,7 +54,7 @@ def test_an_answer_that_is_no_class_is_taken_for_the_last_one(build: Path) -> No
 
 def test_the_circuit_of_a_build_remembers_its_colours_too(build: Path) -> None:
     design, _, _ = open_build(build)
-    remembering = replace(design.model, colours=np.array([0], dtype=np.int64))
+    remembering = replace(design.picture_model, colours=np.array([0], dtype=np.int64))
     circuit = replace(circuit_classifier(design), care=np.ones(256, dtype=np.bool_))
     assert circuit.answer(PICTURE)[1].all()
     known = replace(circuit, colours=model_classifier(remembering).colours)

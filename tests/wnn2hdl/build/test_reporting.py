@@ -38,7 +38,7 @@ def test_a_build_notes_confusion_model_and_command(build: Path) -> None:
     confusion = np.array(report["confusion"])
     assert confusion.sum() == 2 * 64 * 64
     assert np.trace(confusion) / confusion.sum() == report["accuracy"]
-    model = Design.load(build).model
+    model = Design.load(build).picture_model
     assert report["model"]["saturation"] == model.saturation.tolist()
     assert report["model"]["bits"] == list(model.encoder.names)
     assert report["care"]["of"] == 256

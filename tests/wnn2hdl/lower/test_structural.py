@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from tests.small_networks import WORDS, lut_network, wisard
+from tests.small_networks import WORDS, encoder_of, lut_network, wisard
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import codes_to_bits
-from wnn2hdl.ir.models import Dynamic
-from wnn2hdl.lower.structural import VotingModel, core, known_bits, network
+from wnn2hdl.ir.models import Dynamic, LutGroupModel, SparseWisardModel
+from wnn2hdl.lower.structural import core, known_bits, network
 
 
-def all_words(model: VotingModel, seed: int = 0) -> np.ndarray:
+def all_words(model: LutGroupModel | SparseWisardModel, seed: int = 0) -> NDArray[np.int64]:
     """Every value of each feature, the others random: int64 ``[samples, features]``."""
     rng = np.random.default_rng(seed)
     values = np.arange(WORDS.lowest, WORDS.highest + 1)
@@ -23,12 +24,12 @@ def all_words(model: VotingModel, seed: int = 0) -> np.ndarray:
     )
 
 
-def answers(model: VotingModel) -> tuple[np.ndarray, np.ndarray]:
+def answers(model: LutGroupModel | SparseWisardModel) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Classes by the circuit and by the model."""
     words = all_words(model)
     features = codes_to_bits(words & (1 << WORDS.bits) - 1, WORDS.bits).reshape(len(words), -1)
     found = network(model).evaluate({"features": features})["class_bits"]
-    return found @ (1 << np.arange(found.shape[1])), model.evaluate(model.encoder.bits_of_words(words))
+    return found @ (1 << np.arange(found.shape[1])), model.evaluate(encoder_of(model).bits_of_words(words))
 
 
 @given(st.integers(0, 10_000))
@@ -55,7 +56,7 @@ def test_the_encoder_makes_only_bits_that_are_read() -> None:
 def test_thresholds_beyond_all_words_are_constant_and_equal_ones_are_one_bit() -> None:
     model = lut_network(0)
     levels = (-100.0, 0.01, 0.02, 100.0)
-    encoder = replace(model.encoder, thresholds=(levels, (1.0,), (1.0,)), strict=False)
+    encoder = replace(encoder_of(model), thresholds=(levels, (1.0,), (1.0,)), strict=False)
     assert known_bits(encoder) == {0: True, 2: 1, 3: False}
 
 
@@ -67,4 +68,4 @@ def test_a_threshold_found_anew_for_each_sample_is_no_circuit() -> None:
 def test_numbers_without_a_format_are_refused() -> None:
     model = lut_network(0)
     with pytest.raises(InputError, match="state the format of the words with --input"):
-        network(replace(model, encoder=replace(model.encoder, input=None)))
+        network(replace(model, encoder=replace(encoder_of(model), input=None)))

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from tests.small_networks import lut_network, wisard
+from tests.small_networks import WORDS, encoder_of, lut_network, wisard
 from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
 from wnn2hdl.lower.structural import VotingModel, network
@@ -40,19 +41,16 @@ def test_every_threshold_is_looked_at_from_both_sides() -> None:
     model = lut_network(5)
     claim = network_specification(model).claims["network"]
     assert claim.stimulus is not None
-    bits = model.encoder.bits_of_words(words_of(claim.stimulus()["features"]))
+    encoder = encoder_of(model)
+    bits = encoder.bits_of_words(words_of(claim.stimulus()["features"]))
     constant = bits.all(axis=0) | ~bits.any(axis=0)
-    beyond = [
-        not model.encoder.input.lowest < level <= model.encoder.input.highest  # type: ignore[union-attr]
-        for levels in model.encoder.levels  # type: ignore[union-attr]
-        for level in levels
-    ]
+    beyond = [not WORDS.lowest < level <= WORDS.highest for levels in encoder.levels for level in levels]
     assert constant.tolist() == beyond
 
 
-def words_of(features: np.ndarray) -> np.ndarray:
+def words_of(features: NDArray[np.bool_]) -> NDArray[np.int64]:
     digits = features.reshape(len(features), -1, 6).astype(np.int64)
-    return digits @ np.array([1, 2, 4, 8, 16, -32])
+    return np.asarray(digits @ np.array([1, 2, 4, 8, 16, -32]))
 
 
 @pytest.mark.slow
