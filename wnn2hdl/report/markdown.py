@@ -1,10 +1,11 @@
 """`report.json` as a page for a person."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import compress
 from typing import Any
 
 from wnn2hdl.lower.targets import TARGETS
-from wnn2hdl.report.page import MISSING, form
+from wnn2hdl.report.page import MANY_TABLES, MISSING, form, plain_options, simulations
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -38,10 +39,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         f"# {report['name']}",
         f"Target {report['target']}, mode {report['mode']}, proof: {_proof(report['proof'])}.",
         "## Resources, measured",
-        _table(
-            ["part", *_COLUMNS.values()],
-            ([part, *(figures[key] for key in _COLUMNS)] for part, figures in report["parts"].items()),
-        ),
+        _resources(report["parts"]),
         f"Counted after `{report['count']}`." if report["count"] else "",
         _COUNTING,
         _utilisation(report),
@@ -52,12 +50,26 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         ),
         _answers(report),
         _minimised(report["minimised"]),
+        _simulated(report["options"]),
         _mapping("Seconds", "stage", report["seconds"]),
-        _mapping("Options", "option", report["options"]),
+        _mapping("Options", "option", _options(report["options"])),
         _mapping("Tools", "tool", report["tools"]),
         _mapping("SHA-256", "file", report["hashes"]),
     ]
     return "\n\n".join(section for section in sections if section) + "\n"
+
+
+def _resources(parts: Mapping[str, Mapping[str, Any]]) -> str:
+    """The parts of which anything was measured, by what was measured of any of them."""
+    rows = {part: [figures[key] for key in _COLUMNS] for part, figures in parts.items()}
+    rows = {part: row for part, row in rows.items() if any(value is not None for value in row)}
+    if not rows:
+        return "Nothing was measured."
+    shown = [any(row[i] is not None for row in rows.values()) for i in range(len(_COLUMNS))]
+    return _table(
+        ["part", *compress(_COLUMNS.values(), shown)],
+        ([part, *compress(row, shown)] for part, row in rows.items()),
+    )
 
 
 def _proof(proof: Mapping[str, Any]) -> str:
@@ -72,11 +84,12 @@ def _answers(report: Mapping[str, Any]) -> str:
     answers: list[tuple[str, str]] = []
     target = TARGETS.get(report["target"])
     if target is None or target.classifies:
+        care = report["care"]
         answers += [
             ("accuracy of the circuit", form(report["accuracy"], "percent")),
             ("accuracy of the model", form(report["model_accuracy"], "percent")),
-            ("pixel codes cared for", _cell(report["care"]["codes"])),
-            ("share of other imagery that these codes cover", form(report["care"]["coverage"], "percent")),
+            ("pixel codes cared for", form(care["codes"])),
+            ("share of other imagery that these codes cover", form(care["coverage"], "percent")),
         ]
     if edges["name"] is not None:
         answers += [
@@ -85,8 +98,9 @@ def _answers(report: Mapping[str, Any]) -> str:
                 (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
                 for figure in ("precision", "recall", "f1")
             ),
-            ("measured on", _cell(edges["imagery"])),
+            ("measured on", form(edges["imagery"], "text")),
         ]
+    answers = [(figure, value) for figure, value in answers if value != MISSING]
     return f"## Answers\n\n{_table(['figure', 'value'], answers)}" if answers else ""
 
 
@@ -106,6 +120,23 @@ def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
     keys = ["cubes_before", "cubes_after", "literals_before", "literals_after"]
     rows = ([name, *(sizes[key] for key in keys)] for name, sizes in tables.items())
     return "## Minimised\n\n" + _table(["table", *(key.replace("_", " ") for key in keys)], rows)
+
+
+def _simulated(options: Mapping[str, Any]) -> str:
+    rows = [(part, options["simulated_vectors"][part], when) for part, when in simulations(options).items()]
+    return "## Simulated against the model\n\n" + _table(["part", "vectors", "when"], rows) if rows else ""
+
+
+def _options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The plain ones, and those of mappings that are few."""
+    inner = {
+        f"{key}, {name}": value
+        for key, values in options.items()
+        if isinstance(values, Mapping) and key != "simulated_vectors" and len(values) <= MANY_TABLES
+        for name, value in values.items()
+        if value is not None
+    }
+    return plain_options(options) | inner
 
 
 def _mapping(title: str, what: str, values: Mapping[str, Any]) -> str:
