@@ -30,6 +30,11 @@ def for_all_widths(draw: Callable[..., Markup], *arguments: Any) -> Markup:
     return draw(*arguments) + draw(*arguments, narrow=True)
 
 
+def published(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """The published figures a build can be compared with: like them it must have a Sobel beside it."""
+    return report["published"] if "sobel" in report["parts"] else ()
+
+
 def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
     """LUTs of each measured part, the Sobel baseline among them, and below them what was published.
 
@@ -45,8 +50,8 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
     measured = [
         (part, figures["luts"]) for part, figures in report["parts"].items() if figures["luts"] is not None
     ]
-    published = [(figure["what"], figure["luts"]) for figure in report["published"]]
-    rows = [*measured, *published]
+    quoted = [(figure["what"], figure["luts"]) for figure in published(report)]
+    rows = [*measured, *quoted]
     if not rows:
         return Markup()
 
@@ -56,7 +61,7 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
         places = [i + (i >= len(measured)) * 0.9 for i in range(len(rows))]
         for place, (name, luts) in zip(places, measured, strict=False):
             axes.barh(place, luts, height=height, color=MUTED if name == "sobel" else ACCENT)
-        for place, (_, luts) in zip(places[len(measured) :], published, strict=True):
+        for place, (_, luts) in zip(places[len(measured) :], quoted, strict=True):
             axes.barh(
                 place,
                 luts,
@@ -84,7 +89,7 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
         axes.set_ylim(places[-1] + 0.6, -1.0 if narrow else -0.6)
         axes.set_xlim(0, most * 1.08)
         axes.set_xlabel("LUTs")
-        if measured and published:
+        if measured and quoted:
             line = len(measured) - (0.2 if narrow else 0.05)
             axes.axhline(line, color=RULE, linewidth=1)
             axes.text(
@@ -101,8 +106,9 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
             )
 
     told = ", ".join(f"{name} {luts}" for name, luts in measured)
-    quoted = ", ".join(f"{name} {luts}" for name, luts in published)
-    title = f"LUTs by part. Measured: {told or 'nothing'}. Published by others: {quoted}."
+    title = f"LUTs by part. Measured: {told or 'nothing'}."
+    if quoted:
+        title += f" Published by others: {', '.join(f'{name} {luts}' for name, luts in quoted)}."
     bar = _NARROW_BAR if narrow else _BAR
     return _svg(paint, title, "luts", bar * (len(rows) + 2.6), narrow=narrow)
 

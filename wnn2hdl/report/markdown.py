@@ -5,6 +5,7 @@ from itertools import compress
 from typing import Any
 
 from wnn2hdl.lower.targets import TARGETS
+from wnn2hdl.report.charts import published
 from wnn2hdl.report.page import MANY_TABLES, MISSING, form, plain_options, simulations
 
 _COLUMNS = {
@@ -26,7 +27,7 @@ into one is assumed. The inverters left in the Sobel baseline are not among its 
 18 Kb is half a BRAM36. Delay is logic only, without routing. n/a: not measured.
 
 **Yosys is not Vivado:** Vivado packs, places and routes, and its counts for the same Verilog may differ.
-The published figures below come from other tools and are there for orientation."""
+Published figures come from other tools and are there for orientation."""
 
 
 def report_markdown(report: Mapping[str, Any]) -> str:
@@ -43,11 +44,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         f"Counted after `{report['count']}`." if report["count"] else "",
         _COUNTING,
         _utilisation(report),
-        "## Published, not measured here",
-        _table(
-            ["circuit", "LUTs", "registers", "source"],
-            ([row["what"], row["luts"], row["registers"], row["source"]] for row in report["published"]),
-        ),
+        _published(report),
         _answers(report),
         _minimised(report["minimised"]),
         _simulated(report["options"]),
@@ -70,6 +67,12 @@ def _resources(parts: Mapping[str, Mapping[str, Any]]) -> str:
         ["part", *compress(_COLUMNS.values(), shown)],
         ([part, *compress(row, shown)] for part, row in rows.items()),
     )
+
+
+def _published(report: Mapping[str, Any]) -> str:
+    heads = ["circuit", "LUTs", "registers", "source"]
+    rows = [[row["what"], row["luts"], row["registers"], row["source"]] for row in published(report)]
+    return "## Published, not measured here\n\n" + _table(heads, rows) if rows else ""
 
 
 def _proof(proof: Mapping[str, Any]) -> str:

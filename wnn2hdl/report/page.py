@@ -13,7 +13,7 @@ from markupsafe import Markup
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.lower.targets import TARGETS
-from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars
+from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.schematic import draw
 
@@ -26,7 +26,7 @@ MISSING = "n/a"
 MANY_TABLES = 40
 """More tables than these are summed up and not shown one by one."""
 
-_MANY_CELLS, _MANY_RAMS, _MANY_CLASSES = 400, 400, 30
+_MANY_CELLS, _MANY_RAMS, _MANY_CLASSES = 150, 400, 30
 """The same of LUTs and multiplexers in one drawing, of bars of saturation, and of classes in a confusion."""
 
 RESOURCES = {
@@ -153,6 +153,7 @@ def build_page(
         training=_training(report["name"], model["training"]) if model else "",
         options=plain_options(report["options"]),
         simulations=simulations(report["options"]),
+        published=published(report),
         lut_chart=for_all_widths(lut_bars, report),
         few_covers=len(report["minimised"]) <= MANY_TABLES,
         cubes=_total(report["minimised"]),

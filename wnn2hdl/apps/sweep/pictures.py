@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Points = tuple[Sequence[int], Sequence[float]]
 """LUTs and accuracies of a cloud of trials."""
 
-_SIZE = (6.4, 4.4)
+_SIZE = (5.4, 3.9)
 _LARGEST_CLOUD = 20_000
 _LUT_TICKS = (0, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 200, 500, 1000)
 _COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown")
@@ -117,7 +117,7 @@ def _architecture_axes(axes: "Axes", surface: Surface, marked: Sequence[Cell]) -
         )
     if marked:
         names = [f"{number}: n={n}, k={k}" for number, (n, k) in enumerate(marked, 1)]
-        axes.set_title("   ".join(names), fontsize="small")
+        axes.set_title("   ".join(names), fontsize="small", pad=10)
     axes.set_xlabel("RAMs k")
     axes.set_ylabel("address bits n")
     axes.set_xticks(surface.rams)
@@ -149,7 +149,7 @@ def _fronts(figure: "Figure", clouds: Sequence[tuple[str, Points, Sequence[Recor
         # LUTs are whole numbers: a little noise shows how many trials share a place.
         place = np.array(luts[::step]) * np.exp(rng.uniform(-0.06, 0.06, len(height)))
         # Thousands of dots as vectors make a file that no browser likes.
-        axes.scatter(place, height, s=7, alpha=0.3, color=colour, linewidths=0, rasterized=True)
+        axes.scatter(place, height, s=8, alpha=0.5, color=colour, linewidths=0, rasterized=True)
         steps = [record.luts or 0 for record in front]
         best = [100 * (record.circuit_accuracy or 0) for record in front]
         axes.step(steps, best, where="post", marker="o", markersize=4, color=colour, label=f"{name}, front")
