@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
@@ -274,9 +273,11 @@ def test_the_page_of_a_sweep_fits_the_window(open_page: Callable[..., Page], swe
 
 
 def test_plots_have_the_theme_of_the_page(open_page: Callable[..., Page], sweep: Path) -> None:
-    def corner(page: Page) -> tuple[int, ...]:
+    def corner(page: Page) -> list[int]:
         shot = page.locator(".plots img").first.screenshot()
-        return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"))[2, 2].tolist()
+        colour = Image.open(io.BytesIO(shot)).convert("RGB").getpixel((2, 2))
+        assert isinstance(colour, tuple)
+        return list(colour)
 
     light, dark = open_page(sweep, "light"), open_page(sweep, "dark")
     assert min(corner(light)) > 240

@@ -1,12 +1,13 @@
 """`report.json` as a page for a person."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from itertools import compress
 from typing import Any
 
 from wnn2hdl.lower.targets import TARGETS
+from wnn2hdl.markdown import MISSING, escaped, table
 from wnn2hdl.report.charts import published
-from wnn2hdl.report.page import MANY_TABLES, MISSING, form, plain_options, simulations
+from wnn2hdl.report.page import MANY_TABLES, form, plain_options, simulations
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -37,7 +38,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         report: the object of `report.json`.
     """
     sections = [
-        f"# {report['name']}",
+        f"# {escaped(report['name'])}",
         f"Target {report['target']}, mode {report['mode']}, proof: {_proof(report['proof'])}.",
         "## Resources, measured",
         _resources(report["parts"]),
@@ -63,7 +64,7 @@ def _resources(parts: Mapping[str, Mapping[str, Any]]) -> str:
     if not rows:
         return "Nothing was measured."
     shown = [any(row[i] is not None for row in rows.values()) for i in range(len(_COLUMNS))]
-    return _table(
+    return table(
         ["part", *compress(_COLUMNS.values(), shown)],
         ([part, *compress(row, shown)] for part, row in rows.items()),
     )
@@ -72,13 +73,13 @@ def _resources(parts: Mapping[str, Mapping[str, Any]]) -> str:
 def _published(report: Mapping[str, Any]) -> str:
     heads = ["circuit", "LUTs", "registers", "source"]
     rows = [[row["what"], row["luts"], row["registers"], row["source"]] for row in published(report)]
-    return "## Published, not measured here\n\n" + _table(heads, rows) if rows else ""
+    return "## Published, not measured here\n\n" + table(heads, rows) if rows else ""
 
 
 def _proof(proof: Mapping[str, Any]) -> str:
     method = f" by {proof['method']}" if proof["method"] else ""
     seconds = f" in {proof['seconds']:.2f} s" if proof["seconds"] is not None else ""
-    failure = f": {proof['failure']}" if proof["failure"] else ""
+    failure = f": {escaped(proof['failure'])}" if proof["failure"] else ""
     return f"{proof['status']}{method}{seconds}{failure}"
 
 
@@ -96,7 +97,7 @@ def _answers(report: Mapping[str, Any]) -> str:
         ]
     if edges["name"] is not None:
         answers += [
-            ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
+            ("edge patterns", f"{edges['name']}, {form(edges['patterns'])} of 512 windows"),
             *(
                 (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
                 for figure in ("precision", "recall", "f1")
@@ -104,7 +105,7 @@ def _answers(report: Mapping[str, Any]) -> str:
             ("measured on", form(edges["imagery"], "text")),
         ]
     answers = [(figure, value) for figure, value in answers if value != MISSING]
-    return f"## Answers\n\n{_table(['figure', 'value'], answers)}" if answers else ""
+    return f"## Answers\n\n{table(['figure', 'value'], answers)}" if answers else ""
 
 
 def _utilisation(report: Mapping[str, Any]) -> str:
@@ -114,7 +115,7 @@ def _utilisation(report: Mapping[str, Any]) -> str:
     kinds = list(dict.fromkeys(kind for shares in parts.values() for kind in shares))
     rows = ([part, *(form(shares.get(kind), "points") for kind in kinds)] for part, shares in parts.items())
     heads = [_COLUMNS.get(kind, kind) for kind in kinds]
-    return f"## Share of the {report['device']}\n\n" + _table(["part", *heads], rows)
+    return f"## Share of the {report['device']}\n\n" + table(["part", *heads], rows)
 
 
 def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
@@ -122,12 +123,12 @@ def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
         return ""
     keys = ["cubes_before", "cubes_after", "literals_before", "literals_after"]
     rows = ([name, *(sizes[key] for key in keys)] for name, sizes in tables.items())
-    return "## Minimised\n\n" + _table(["table", *(key.replace("_", " ") for key in keys)], rows)
+    return "## Minimised\n\n" + table(["table", *(key.replace("_", " ") for key in keys)], rows)
 
 
 def _simulated(options: Mapping[str, Any]) -> str:
     rows = [(part, options["simulated_vectors"][part], when) for part, when in simulations(options).items()]
-    return "## Simulated against the model\n\n" + _table(["part", "vectors", "when"], rows) if rows else ""
+    return "## Simulated against the model\n\n" + table(["part", "vectors", "when"], rows) if rows else ""
 
 
 def _options(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -143,17 +144,4 @@ def _options(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _mapping(title: str, what: str, values: Mapping[str, Any]) -> str:
-    return f"## {title}\n\n" + _table([what, "value"], values.items()) if values else ""
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(_cell(value) for value in line)} |" for line in lines)
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return MISSING
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return str(value).replace("|", "\\|").replace("\n", " ")
+    return f"## {title}\n\n" + table([what, "value"], values.items()) if values else ""

@@ -13,15 +13,13 @@ from markupsafe import Markup
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.lower.targets import TARGETS
+from wnn2hdl.markdown import MISSING
 from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.schematic import draw
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-
-MISSING = "n/a"
-"""Stands where nothing was measured."""
 
 MANY_TABLES = 40
 """More tables than these are summed up and not shown one by one."""

@@ -4,7 +4,7 @@ import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from wnn2hdl.files import write_bytes
 from wnn2hdl.report.charts import INK
@@ -26,18 +26,16 @@ def plot_style() -> Iterator[None]:
     from matplotlib import rc_context
 
     inked = ("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color", "grid.color")
-    pane = (0.5, 0.5, 0.5, 0.12)
-    with rc_context(
-        {
-            **dict.fromkeys(inked, INK),
-            **{f"axes3d.{axis}axis.panecolor": pane for axis in "xyz"},
-            "axes.facecolor": "none",
-            "grid.alpha": 0.25,
-            "legend.frameon": False,
-            # Names drawn at random would make equal plots differ.
-            "svg.hashsalt": "wnn2hdl",
-        }
-    ):
+    style: dict[Any, Any] = {
+        **dict.fromkeys(inked, INK),
+        **{f"axes3d.{axis}axis.panecolor": (0.5, 0.5, 0.5, 0.12) for axis in "xyz"},
+        "axes.facecolor": "none",
+        "grid.alpha": 0.25,
+        "legend.frameon": False,
+        # Names drawn at random would make equal plots differ.
+        "svg.hashsalt": "wnn2hdl",
+    }
+    with rc_context(style):
         yield
 
 

@@ -175,7 +175,7 @@ def test_how_the_block_and_its_matcher_add_up_is_said(
 def network_report(report: dict[str, Any]) -> dict[str, Any]:
     """The report of a network of tables that has no discriminators, no pictures and no care set."""
     parts = dict.fromkeys(("encoder", "core", "network"), report["parts"]["block"])
-    model = {"address_bits": None, "rams": None, "bleaching": None, "saturation": []}
+    model: dict[str, Any] = {"address_bits": None, "rams": None, "bleaching": None, "saturation": []}
     model |= {"classes": ["0", "1", "2"], "bits": [f"x{i}" for i in range(4000)], "training": {}}
     report |= {"target": "network", "mode": "exact", "parts": parts, "model": model, "utilisation": {}}
     report["edges"] = dict.fromkeys(report["edges"])
