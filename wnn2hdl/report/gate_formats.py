@@ -71,8 +71,12 @@ def gate_markdown(
         ("proof", [report["proof"]["status"] for report in reports.values()]),
     ]
     heads, cells = zip(*columns, strict=True)
-    align: list[Align] = ["left", "left", *("right" for _ in figures), "left"]
-    lines = [f"### wnn2hdl: {title}", "", table(heads, zip(*cells, strict=True), align)]
+    right: list[Align] = ["right"] * len(figures)
+    lines = [
+        f"### wnn2hdl: {title}",
+        "",
+        table(heads, zip(*cells, strict=True), ["left", "left", *right, "left"]),
+    ]
     lines += _list("Why it failed", failed)
     lines += _list("Better than the baseline; `--write-baseline` records it", [c for c in checks if c.better])
     return "\n".join(lines) + "\n"

@@ -121,6 +121,8 @@ def build_page(
         what=target.description if target else f"A circuit of target {report['target']}",
         form=form,
         classifies=target is None or target.classifies,
+        # Not of an edge filter or a matcher, which are the same for every model.
+        model=model if target is None or target.classifies or "network" in report["parts"] else None,
         answers=target is None or target.classifies or target.has_edges,
         window=_window(window) if window else (),
         places={
