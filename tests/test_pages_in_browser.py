@@ -1,5 +1,6 @@
 """The pages as Chromium shows them: figures, tables of LUTs on hover and focus, sorting, both themes."""
 
+import io
 import json
 import os
 import shutil
@@ -8,14 +9,20 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from wnn2hdl.apps.sweep import Recipe, draw, present, run_locally, run_sweep
+from wnn2hdl.apps.sweep import grid as sweep_grid
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.reporting import open_entries, write_page
+from wnn2hdl.dataset import from_masks
+from wnn2hdl.encode import high_bits
 from wnn2hdl.ir import LutNetwork
 from wnn2hdl.report import Care, ModelFigures, index_page
 from wnn2hdl.report.logic import expression, grid
 from wnn2hdl.report.page import form
+from wnn2hdl.samples.landscapes import IMAGES, MASKS, write_landscapes
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -203,6 +210,94 @@ def test_many_classes_do_not_stick_out_either(
     page.set_viewport_size({"width": width, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.locator("table.confusion td[style]").count() == 64
+
+
+SHOWN_CHARTS = """[...document.querySelectorAll('svg.chart, svg.overview')]
+  .filter(x => x.getBoundingClientRect().width > 0)
+  .map(x => [x.getAttribute('aria-label'), Math.min(...[...x.querySelectorAll('text')].map(t =>
+     parseFloat(getComputedStyle(t).fontSize) * x.getScreenCTM().a)),
+     Math.max(...[...x.querySelectorAll('text')].map(t => t.getBoundingClientRect().right))])"""
+"""Of each chart that is shown: what it is, its smallest letters in pixels, and where its last letter ends."""
+
+
+@pytest.mark.parametrize("width", [360, 400, 760, 780, 1280])
+def test_charts_fit_the_window_in_letters_that_can_be_read(
+    open_page: Callable[..., Page], folder: Path, index: Path, width: int
+) -> None:
+    for path, charts in ((folder / "report.html", 2), (index, 1)):
+        page = open_page(path)
+        page.set_viewport_size({"width": width, "height": 800})
+        found = page.evaluate(SHOWN_CHARTS)
+        assert len(found) == charts
+        for label, letters, end in found:
+            assert 8 <= letters <= 17, label
+            assert end <= width, label
+
+
+@pytest.mark.parametrize("width", [360, 1280])
+def test_ten_classes_fit_a_screen(
+    open_page: Callable[..., Page], write_build: Callable[..., Path], tmp_path: Path, width: int
+) -> None:
+    digits = ModelFigures(tuple("0123456789"), None, None, ("R7",), None, ())
+    path = write_page(write_build(tmp_path / "digits", model=digits, confusion=((9_800,) * 10,) * 10))
+    page = open_page(path)
+    page.set_viewport_size({"width": width, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    table = "(x => x.scrollWidth <= x.clientWidth)(document.querySelector('table.confusion').parentElement)"
+    assert page.evaluate(table) == (width == 1280)
+
+
+@pytest.fixture(scope="module")
+def sweep(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a small sweep."""
+    folder = tmp_path_factory.mktemp("sweep")
+    write_landscapes(folder, 4, 64, seed=0, progress=lambda *_: None)
+    dataset = from_masks(folder / IMAGES, folder / MASKS)
+    plan = sweep_grid(Recipe(0, high_bits().bits, None, 1), (2, 3), (3, 4), 3)
+    sets = draw(dataset, pixels=500, seed=0, progress=lambda *_: None)
+    outcome = run_sweep(sets, plan, folder / "out", run_locally, lambda *_: None, finalist_trials=3)
+    return present(outcome, sets, folder / "out")
+
+
+@pytest.mark.parametrize("width", [360, 400, 1280])
+def test_the_page_of_a_sweep_fits_the_window(open_page: Callable[..., Page], sweep: Path, width: int) -> None:
+    page = open_page(sweep)
+    page.set_viewport_size({"width": width, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert all(reached for _, reached in page.evaluate(CUT_OFF))
+    over = "[...document.querySelectorAll('.figures .value')].filter(x => x.scrollWidth > x.clientWidth + 1)"
+    assert page.evaluate(f"{over}.map(x => x.textContent)") == []
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 688, "height": 1000})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 688
+
+
+def test_plots_have_the_theme_of_the_page(open_page: Callable[..., Page], sweep: Path) -> None:
+    def corner(page: Page) -> list[int]:
+        shot = page.locator(".plots img").first.screenshot()
+        colour = Image.open(io.BytesIO(shot)).convert("RGB").getpixel((2, 2))
+        assert isinstance(colour, tuple)
+        return list(colour)
+
+    light, dark = open_page(sweep, "light"), open_page(sweep, "dark")
+    assert min(corner(light)) > 240
+    assert max(corner(dark)) < 40
+    light.locator("button.theme").click()
+    assert max(corner(light)) < 40
+    dark.emulate_media(media="print")
+    assert min(corner(dark)) > 240
+
+
+def test_the_front_of_a_sweep_sorts(open_page: Callable[..., Page], sweep: Path) -> None:
+    page = open_page(sweep)
+    table = page.locator("table.sortable").first
+    head = table.locator("th", has_text="accuracy of the circuit")
+    column = "x => x.map(y => Number(y.value))"
+    for direction in ("ascending", "descending"):
+        head.locator("button").click()
+        values = table.locator("td:nth-child(2) data").evaluate_all(column)
+        assert values == sorted(values, reverse=direction == "descending")
+        assert head.get_attribute("aria-sort") == direction
 
 
 BROKEN = """[...document.querySelectorAll(

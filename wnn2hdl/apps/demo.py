@@ -28,7 +28,7 @@ from wnn2hdl.images import write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.progress import Progress
-from wnn2hdl.report import Exhibit, index_page
+from wnn2hdl.report import Exhibit, index_page, percent
 from wnn2hdl.samples import landscape
 from wnn2hdl.samples.landscapes import IMAGES, MASKS, write_landscapes
 from wnn2hdl.training.budget import train_under_budget
@@ -58,7 +58,7 @@ PAGE, REFERENCE_BUILD, SMALLEST_BUILD = "index.html", "reference", "smallest"
 """Names in the demo's folder."""
 
 REFERENCE = "the reference design's discriminators (n = 4, k = 16), on the colours of the training landscapes"
-SMALLEST = f"the most accurate classifier of at most {MAX_LUTS} LUTs a pixel, on every input"
+SMALLEST = f"the most accurate classifier of at most {MAX_LUTS} LUTs per pixel, on every input"
 """What the two builds are."""
 
 
@@ -70,7 +70,7 @@ class Demo:
         page: the page to open.
         outcome: of the sweep.
         reference: the reference design's discriminators (n = 4, k = 16), in domain mode.
-        smallest: the most accurate classifier of at most `MAX_LUTS` LUTs a pixel, on every input.
+        smallest: the most accurate classifier of at most `MAX_LUTS` LUTs per pixel, on every input.
         windows: 3x3 windows of a landscape that ran through the smallest circuit.
         scan: the summary of the mapped landscape; None without the extra ``geo``.
         flight: the located flight; None without it.
@@ -180,7 +180,7 @@ def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRu
     if scanned:
         text = (
             f"A landscape of {SCENE_SIDE}x{SCENE_SIDE} pixels as the smallest circuit sees it: "
-            f"{scanned['deforested']['share']:.1%} deforested."
+            f"{percent(scanned['deforested']['share'])} is deforested."
         )
         exhibits.append(Exhibit("Map", text, "scan/summary.md", f"scan/{OVERLAY_FILE}"))
     if flight:
@@ -190,7 +190,7 @@ def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRu
             f"{len(row.fixes)} frames of a generated flight, located on the whole map by weightless edges: "
             f"{row.mean_m:.1f} m off on average. {search.beaten}"
         )
-        exhibits.append(Exhibit("Flight", text.strip(), "flight/flight.md", "flight/tracks_map.png"))
+        exhibits.append(Exhibit("Flight", text.strip(), "flight/flight.md", "flight/tracks_map.svg"))
     text = f"{len(outcome.plan)} trained and costed circuits, and the statistics that choose among them."
-    exhibits.append(Exhibit("Sweep", text, "sweep/index.html", "sweep/pareto.png"))
+    exhibits.append(Exhibit("Sweep", text, "sweep/index.html", "sweep/pareto.svg"))
     return exhibits

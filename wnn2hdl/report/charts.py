@@ -19,17 +19,30 @@ INK, MUTED, RULE, ACCENT, PAPER = "#000001", "#000002", "#000003", "#000004", "#
 
 _VARIABLES = {INK: "--ink", MUTED: "--muted", RULE: "--rule", ACCENT: "--accent", PAPER: "--paper"}
 
-_WIDTH = 11.0
-_BAR = 0.34
+_WIDTH, _NARROW_WIDTH = 11.0, 4.6
+"""Inches, each of which a page shows about as 90 pixels; the narrow one is for phones."""
+
+_BAR, _NARROW_BAR = 0.34, 0.48
 
 
-def lut_bars(report: Mapping[str, Any]) -> Markup:
+def for_all_widths(draw: Callable[..., Markup], *arguments: Any) -> Markup:
+    """A chart twice, the second time for narrow windows; the style sheet shows the one that fits."""
+    return draw(*arguments) + draw(*arguments, narrow=True)
+
+
+def published(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """The published figures that a build can be compared with: they are of circuits for pictures."""
+    return () if "network" in report["parts"] else report["published"]
+
+
+def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
     """LUTs of each measured part, the Sobel baseline among them, and below them what was published.
 
     Measured bars are filled; published ones are outlined, with dashes, under their own heading.
 
     Args:
         report: the object of `report.json`.
+        narrow: whether names stand above their bars and not beside them.
 
     Returns:
         The drawing; nothing where there is no figure.
@@ -37,20 +50,22 @@ def lut_bars(report: Mapping[str, Any]) -> Markup:
     measured = [
         (part, figures["luts"]) for part, figures in report["parts"].items() if figures["luts"] is not None
     ]
-    published = [(figure["what"], figure["luts"]) for figure in report["published"]]
-    rows = [*measured, *published]
+    quoted = [(figure["what"], figure["luts"]) for figure in published(report)]
+    rows = [*measured, *quoted]
     if not rows:
         return Markup()
+
+    height = 0.4 if narrow else 0.62
 
     def paint(axes: "Axes") -> None:
         places = [i + (i >= len(measured)) * 0.9 for i in range(len(rows))]
         for place, (name, luts) in zip(places, measured, strict=False):
-            axes.barh(place, luts, height=0.62, color=MUTED if name == "sobel" else ACCENT)
-        for place, (_, luts) in zip(places[len(measured) :], published, strict=True):
+            axes.barh(place, luts, height=height, color=MUTED if name == "sobel" else ACCENT)
+        for place, (_, luts) in zip(places[len(measured) :], quoted, strict=True):
             axes.barh(
                 place,
                 luts,
-                height=0.62,
+                height=height,
                 facecolor="none",
                 edgecolor=MUTED,
                 linestyle=(0, (3, 2)),
@@ -59,12 +74,23 @@ def lut_bars(report: Mapping[str, Any]) -> Markup:
         most = max(1, *(luts for _, luts in rows))
         for place, (_, luts) in zip(places, rows, strict=True):
             axes.text(luts + most / 80, place, f"{luts:,}", va="center", color=INK, fontweight="bold")
-        axes.set_yticks(places, [_short(name) for name, _ in rows])
-        axes.set_ylim(places[-1] + 0.6, -0.6)
+        if narrow:
+            axes.set_yticks([])
+            for place, (name, _) in zip(places, rows, strict=True):
+                axes.annotate(
+                    _short(name),
+                    (0, place - height / 2),
+                    xytext=(0, 2),
+                    textcoords="offset points",
+                    color=INK,
+                )
+        else:
+            axes.set_yticks(places, [_short(name) for name, _ in rows])
+        axes.set_ylim(places[-1] + 0.6, -1.0 if narrow else -0.6)
         axes.set_xlim(0, most * 1.08)
         axes.set_xlabel("LUTs")
-        if measured and published:
-            line = len(measured) - 0.05
+        if measured and quoted:
+            line = len(measured) - (0.2 if narrow else 0.05)
             axes.axhline(line, color=RULE, linewidth=1)
             axes.text(
                 most * 1.08,
@@ -80,12 +106,14 @@ def lut_bars(report: Mapping[str, Any]) -> Markup:
             )
 
     told = ", ".join(f"{name} {luts}" for name, luts in measured)
-    quoted = ", ".join(f"{name} {luts}" for name, luts in published)
-    title = f"LUTs by part. Measured: {told or 'nothing'}. Published by others: {quoted}."
-    return _svg(paint, title, "luts", _BAR * (len(rows) + 2.6))
+    title = f"LUTs by part. Measured: {told or 'nothing'}."
+    if quoted:
+        title += f" Published by others: {', '.join(f'{name} {luts}' for name, luts in quoted)}."
+    bar = _NARROW_BAR if narrow else _BAR
+    return _svg(paint, title, "luts", bar * (len(rows) + 2.6), narrow=narrow)
 
 
-def cube_bars(minimised: Mapping[str, Mapping[str, int]]) -> Markup:
+def cube_bars(minimised: Mapping[str, Mapping[str, int]], *, narrow: bool = False) -> Markup:
     """Product terms of each table before and after minimising, on a logarithmic scale."""
 
     def paint(axes: "Axes") -> None:
@@ -112,7 +140,8 @@ def cube_bars(minimised: Mapping[str, Mapping[str, int]]) -> Markup:
         axes.set_xlim(0.6, max(2, most) * 1.6)
         axes.xaxis.set_major_formatter("{x:,.0f}")
         axes.minorticks_off()
-        axes.set_yticks(range(len(minimised)), [_short(name) for name in minimised])
+        width = _NARROW_NAME if narrow else _NAME
+        axes.set_yticks(range(len(minimised)), [_short(name, width) for name in minimised])
         axes.set_ylim(len(minimised) - 0.5, -0.75)
         axes.set_xlabel("cubes, logarithmic: ○ as extracted, ● minimised")
 
@@ -120,14 +149,16 @@ def cube_bars(minimised: Mapping[str, Mapping[str, int]]) -> Markup:
         f"{name} {sizes['cubes_before']} before, {sizes['cubes_after']} after"
         for name, sizes in minimised.items()
     )
-    return _svg(paint, f"Cubes of each table. {told}.", "cubes", 0.55 * len(minimised) + 0.55)
+    height = 0.55 * len(minimised) + 0.55
+    return _svg(paint, f"Cubes of each table. {told}.", "cubes", height, narrow=narrow)
 
 
-def scatter(points: Sequence[tuple[str, int, float]]) -> Markup:
+def scatter(points: Sequence[tuple[str, int, float]], *, narrow: bool = False) -> Markup:
     """Accuracy against LUTs of several builds, each with its name; those at one place share a point.
 
     Args:
         points: name, LUTs and accuracy from 0 to 1.
+        narrow: whether it is for narrow windows.
     """
     names: dict[tuple[float, float], list[str]] = {}
     for name, x, y in points:
@@ -143,10 +174,11 @@ def scatter(points: Sequence[tuple[str, int, float]]) -> Markup:
         axes.set_axisbelow(True)
         axes.set_xlabel("LUTs of the target")
         axes.set_ylabel("accuracy of the circuit, %")
-        _label(axes, {place: _short(", ".join(shared)) for place, shared in names.items()})
+        width = _NARROW_NAME if narrow else _NAME
+        _label(axes, {place: _short(", ".join(shared), width) for place, shared in names.items()})
 
     told = "; ".join(f"{name}: {x} LUTs, {100 * y:.2f} %" for name, x, y in points)
-    return _svg(paint, f"Accuracy against LUTs. {told}.", "scatter", 3.0)
+    return _svg(paint, f"Accuracy against LUTs. {told}.", "scatter", 3.0, narrow=narrow)
 
 
 _CORNERS = ((7, 5), (7, -14), (-7, 5), (-7, -14), (7, 19), (7, -28), (-7, 19), (-7, -28))
@@ -170,11 +202,15 @@ def _label(axes: "Axes", texts: Mapping[tuple[float, float], str]) -> None:
         taken.append(label.get_window_extent())
 
 
-def _short(text: str, width: int = 56) -> str:
+_NAME, _NARROW_NAME = 56, 20
+"""Characters of a name that are shown."""
+
+
+def _short(text: str, width: int = _NAME) -> str:
     return text if len(text) <= width else text[: width - 1].rstrip() + "…"
 
 
-def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float) -> Markup:
+def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float, *, narrow: bool) -> Markup:
     # Not at the top: Matplotlib takes a fifth of a second to import, which other commands need not wait for.
     from matplotlib import rc_context
     from matplotlib.figure import Figure
@@ -198,15 +234,15 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
     with rc_context(style), warnings.catch_warnings():
         # The browser draws the text, with whatever fonts it has.
         warnings.filterwarnings("ignore", "Glyph .* missing from font|Matplotlib currently does not support")
-        figure = Figure(figsize=(_WIDTH, height), layout="constrained")
+        figure = Figure(figsize=(_NARROW_WIDTH if narrow else _WIDTH, height), layout="constrained")
         axes = figure.add_subplot()
         axes.tick_params(axis="y", length=0)
         axes.spines["left"].set_visible(prefix == "scatter")
         paint(axes)
-        return _themed(figure, title, prefix)
+        return _themed(figure, title, prefix, narrow=narrow)
 
 
-def _themed(figure: "Figure", title: str, prefix: str) -> Markup:
+def _themed(figure: "Figure", title: str, prefix: str, *, narrow: bool) -> Markup:
     """The figure as part of a page: no head, no fixed size, the page's colours and font, ids of its own."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
@@ -217,9 +253,10 @@ def _themed(figure: "Figure", title: str, prefix: str) -> Markup:
         text = text.replace(colour, f"var({variable})")
     # Its style sheet would reach the whole page, and its fonts are not the page's.
     text = re.sub(r"\s*<style.*?</style>|; font-family: [^;\"]*|<!--.*?-->", "", text, flags=re.DOTALL)
+    prefix += "-narrow" * narrow
     text = re.sub(r' id="([^"]+)"', rf' id="{prefix}-\1"', text)
     text = re.sub(r'(xlink:href="#|url\(#)', rf"\1{prefix}-", text)
-    head = f'<svg class="chart" role="img" aria-label="{escape(title)}"'
+    head = f'<svg class="chart{" narrow" * narrow}" role="img" aria-label="{escape(title)}"'
     box = re.search(r'viewBox="[^"]+"', text)
     assert box is not None
     head = f'{head} {box[0]} xmlns:xlink="http://www.w3.org/1999/xlink">'

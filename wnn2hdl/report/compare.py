@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 
 from wnn2hdl.ir import MAX_TABLE_INPUTS, LutNetwork, codes_to_bits
-from wnn2hdl.report.page import MISSING, form
+from wnn2hdl.markdown import MISSING
+from wnn2hdl.report.page import MANY_TABLES, form
+
+_LEAST_POINTS = 0.0001
 
 
 @dataclass(frozen=True)
@@ -52,9 +55,7 @@ def compare(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, tu
     figures.append(_number("codes cared for", *codes, kind="count", good=0))
     coverages = [report["care"]["coverage"] for report in (first, second)]
     figures.append(_number("coverage of labelled pixels", *coverages, kind="percent", good=0))
-    for table in dict.fromkeys([*first["minimised"], *second["minimised"]]):
-        cubes = [report["minimised"].get(table, {}).get("cubes_after") for report in (first, second)]
-        figures.append(_number(f"cubes of {table}", *cubes, kind="count", good=0))
+    figures += _cubes(first["minimised"], second["minimised"])
     figures.append(_words("proof", first["proof"]["status"], second["proof"]["status"]))
     return {
         "Figures": tuple(x for x in figures if (x.before, x.after) != (MISSING, MISSING)),
@@ -65,8 +66,27 @@ def compare(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, tu
     }
 
 
+def _cubes(first: Mapping[str, Mapping[str, int]], second: Mapping[str, Mapping[str, int]]) -> list[Change]:
+    """The product terms of each table, or of all together where there are many."""
+    tables = dict.fromkeys([*first, *second])
+    if len(tables) > MANY_TABLES:
+        sums = [sum(sizes["cubes_after"] for sizes in minimised.values()) for minimised in (first, second)]
+        return [_number(f"cubes of all {len(tables):,} tables", *sums, kind="count", good=0)]
+    return [
+        _number(
+            f"cubes of {table}",
+            *(minimised.get(table, {}).get("cubes_after") for minimised in (first, second)),
+            kind="count",
+            good=0,
+        )
+        for table in tables
+    ]
+
+
 def compare_tables(first: Mapping[str, LutNetwork], second: Mapping[str, LutNetwork]) -> tuple[Change, ...]:
     """Whether the networks of two builds compute the same, on all values of the inputs that either reads.
+
+    Where there are many, those that do are counted in one line.
 
     Args:
         first: the networks of a build, by part.
@@ -77,6 +97,10 @@ def compare_tables(first: Mapping[str, LutNetwork], second: Mapping[str, LutNetw
         one, other = first.get(part), second.get(part)
         text = "in one build only" if one is None or other is None else _difference(one, other)
         changes.append(Change(f"function of {part}", _size(one), _size(other), text))
+    if len(changes) > MANY_TABLES:
+        differing = [change for change in changes if change.change]
+        same = f"{len(changes) - len(differing):,} of {len(changes):,}"
+        return (*differing, Change("functions that are the same", same, same, ""))
     return tuple(changes)
 
 
@@ -115,10 +139,18 @@ def _number(what: str, before: float | None, after: float | None, *, kind: str, 
     if before is None or after is None or before == after:
         return Change(what, *texts, "" if before == after else "measured in one build only")
     difference = after - before
-    points = f"{100 * difference:+.{2 if abs(difference) >= 1e-4 else 8}f}".rstrip("0").rstrip(".")
-    told = f"{points} points" if kind == "percent" else f"{difference:+,}{' ps' * (kind == 'ps')}"
+    told = _points(difference) if kind == "percent" else f"{difference:+,}{' ps' * (kind == 'ps')}"
     judgement = "" if not good else "better" if difference * good > 0 else "worse"
     return Change(what, *texts, told.replace("-", "\N{MINUS SIGN}"), judgement)
+
+
+def _points(difference: float) -> str:
+    """A difference of two shares in percentage points: two decimals, or one digit where these would be 0."""
+    points = 100 * difference
+    if abs(points) < _LEAST_POINTS / 2:
+        return f"less than {_LEAST_POINTS} points {'more' if points > 0 else 'fewer'}"
+    text = f"{points:+.2f}" if abs(points) >= 0.01 else f"{float(f'{points:.1g}'):+.4f}"
+    return f"{text.rstrip('0').rstrip('.')} points"
 
 
 def _words(what: str, before: Any, after: Any) -> Change:

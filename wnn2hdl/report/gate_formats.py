@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree as ET
 
+from wnn2hdl.markdown import MISSING, Align, escaped, table
 from wnn2hdl.report.baseline import Recorded, recorded
 from wnn2hdl.report.gate import Check
 from wnn2hdl.report.page import form
@@ -49,26 +50,33 @@ def gate_markdown(
     failed = [check for check in checks if not check.passed]
     title = f"✗ failed, {len(failed)} of" if failed else "✓ passed,"
     title += f" {len(checks)} checks"
-    heads = ["build", "result", "LUTs", "accuracy", "proof"]
-    rules = ["---", "---", "---:", "---:", "---"]
-    if baseline is not None:
-        heads[3:3], rules[3:3] = ["baseline"], ["---:"]
-        heads[5:5], rules[5:5] = ["baseline"], ["---:"]
-    lines = [f"### wnn2hdl: {title}", "", _row(heads), _row(rules)]
-    for name, report in reports.items():
-        bad = any(check.build == name for check in failed)
-        cells = [
-            _escape(name),
-            "✗ failed" if bad else "✓ passed",
-            form(report["parts"][report["target"]]["luts"]),
-            form(report["accuracy"], "percent"),
-            _escape(report["proof"]["status"]),
-        ]
-        if baseline is not None:
-            before = baseline.get(name)
-            cells[3:3] = [form(before.luts.get(before.target) if before else None)]
-            cells[5:5] = [form(before.accuracy if before else None, "percent")]
-        lines.append(_row(cells))
+    bad = {check.build for check in failed}
+    befores = [baseline.get(name) if baseline else None for name in reports]
+    luts = [form(report["parts"][report["target"]]["luts"]) for report in reports.values()]
+    luts_before = [form(before.luts.get(before.target) if before else None) for before in befores]
+    accuracies = [form(report["accuracy"], "percent") for report in reports.values()]
+    accuracies_before = [form(before.accuracy if before else None, "percent") for before in befores]
+    figures = [
+        ("LUTs", luts),
+        ("baseline", luts_before),
+        ("accuracy", accuracies),
+        ("baseline", accuracies_before),
+    ]
+    # A column in which nothing was measured would tell nothing.
+    figures = [(head, cells) for head, cells in figures if set(cells) != {MISSING}]
+    columns = [
+        ("build", list(reports)),
+        ("result", ["✗ failed" if name in bad else "✓ passed" for name in reports]),
+        *figures,
+        ("proof", [report["proof"]["status"] for report in reports.values()]),
+    ]
+    heads, cells = zip(*columns, strict=True)
+    right: list[Align] = ["right"] * len(figures)
+    lines = [
+        f"### wnn2hdl: {title}",
+        "",
+        table(heads, zip(*cells, strict=True), ["left", "left", *right, "left"]),
+    ]
     lines += _list("Why it failed", failed)
     lines += _list("Better than the baseline; `--write-baseline` records it", [c for c in checks if c.better])
     return "\n".join(lines) + "\n"
@@ -109,13 +117,5 @@ def _printable(text: str) -> str:
 def _list(title: str, checks: Sequence[Check]) -> list[str]:
     if not checks:
         return []
-    items = [f"- **{_escape(check.build)}**, {check.name}: {_escape(check.text)}" for check in checks]
+    items = [f"- **{escaped(check.build)}**, {check.name}: {escaped(check.text)}" for check in checks]
     return ["", f"{title}:", "", *items]
-
-
-def _row(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"
-
-
-def _escape(text: str) -> str:
-    return re.sub(r"([\\`*_{}\[\]<>()#|~])", r"\\\1", " ".join(text.split()))

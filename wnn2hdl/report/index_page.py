@@ -7,14 +7,14 @@ from typing import Any
 from markupsafe import Markup
 
 from wnn2hdl.ir import LutNetwork
-from wnn2hdl.report.charts import scatter
+from wnn2hdl.report.charts import for_all_widths, scatter
 from wnn2hdl.report.compare import compare, compare_tables
 from wnn2hdl.report.gate import Check
 from wnn2hdl.report.page import data_element, environment
 
 _FIGURES = {
     "LUTs": ("parts.{target}.luts", "count"),
-    "LUTs a pixel": ("parts.pixel.luts", "count"),
+    "LUTs per pixel": ("parts.pixel.luts", "count"),
     "accuracy": ("accuracy", "percent"),
     "delay, ps": ("parts.{target}.delay_ps", "count"),
     "codes": ("care.codes", "count"),
@@ -104,7 +104,7 @@ def index_page(
                 {"name": entry.name, "link": entry.link, "cells": _cells(entry, heads)} for entry in entries
             ],
             heads=heads,
-            chart=scatter(points) if len(points) > 1 else "",
+            chart=for_all_widths(scatter, points) if len(points) > 1 else "",
             pair=[entry.name for entry in pair] if pair else (),
             comparison=comparison,
             checks=checks,
@@ -127,7 +127,7 @@ def _figure(report: Mapping[str, Any], head: str) -> tuple[str, Any, str]:
     key = place.format(target=report["target"])
     value: Any = report
     for step in key.split("."):
-        value = value[step]
+        value = (value or {}).get(step)
     return key, value, kind
 
 

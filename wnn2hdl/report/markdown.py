@@ -1,10 +1,13 @@
 """`report.json` as a page for a person."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
+from itertools import compress
 from typing import Any
 
 from wnn2hdl.lower.targets import TARGETS
-from wnn2hdl.report.page import MISSING, form
+from wnn2hdl.markdown import MISSING, escaped, table
+from wnn2hdl.report.charts import published
+from wnn2hdl.report.page import MANY_TABLES, form, plain_options, simulations
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -25,7 +28,7 @@ into one is assumed. The inverters left in the Sobel baseline are not among its 
 18 Kb is half a BRAM36. Delay is logic only, without routing. n/a: not measured.
 
 **Yosys is not Vivado:** Vivado packs, places and routes, and its counts for the same Verilog may differ.
-The published figures below come from other tools and are there for orientation."""
+Published figures come from other tools and are there for orientation."""
 
 
 def report_markdown(report: Mapping[str, Any]) -> str:
@@ -35,35 +38,48 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         report: the object of `report.json`.
     """
     sections = [
-        f"# {report['name']}",
+        f"# {escaped(report['name'])}",
         f"Target {report['target']}, mode {report['mode']}, proof: {_proof(report['proof'])}.",
         "## Resources, measured",
-        _table(
-            ["part", *_COLUMNS.values()],
-            ([part, *(figures[key] for key in _COLUMNS)] for part, figures in report["parts"].items()),
-        ),
+        _resources(report["parts"]),
         f"Counted after `{report['count']}`." if report["count"] else "",
         _COUNTING,
         _utilisation(report),
-        "## Published, not measured here",
-        _table(
-            ["circuit", "LUTs", "registers", "source"],
-            ([row["what"], row["luts"], row["registers"], row["source"]] for row in report["published"]),
-        ),
+        _published(report),
         _answers(report),
         _minimised(report["minimised"]),
+        _simulated(report["options"]),
         _mapping("Seconds", "stage", report["seconds"]),
-        _mapping("Options", "option", report["options"]),
+        _mapping("Options", "option", _options(report["options"])),
         _mapping("Tools", "tool", report["tools"]),
         _mapping("SHA-256", "file", report["hashes"]),
     ]
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
+def _resources(parts: Mapping[str, Mapping[str, Any]]) -> str:
+    """The parts of which anything was measured, by what was measured of any of them."""
+    rows = {part: [figures[key] for key in _COLUMNS] for part, figures in parts.items()}
+    rows = {part: row for part, row in rows.items() if any(value is not None for value in row)}
+    if not rows:
+        return "Nothing was measured."
+    shown = [any(row[i] is not None for row in rows.values()) for i in range(len(_COLUMNS))]
+    return table(
+        ["part", *compress(_COLUMNS.values(), shown)],
+        ([part, *compress(row, shown)] for part, row in rows.items()),
+    )
+
+
+def _published(report: Mapping[str, Any]) -> str:
+    heads = ["circuit", "LUTs", "registers", "source"]
+    rows = [[row["what"], row["luts"], row["registers"], row["source"]] for row in published(report)]
+    return "## Published, not measured here\n\n" + table(heads, rows) if rows else ""
+
+
 def _proof(proof: Mapping[str, Any]) -> str:
     method = f" by {proof['method']}" if proof["method"] else ""
     seconds = f" in {proof['seconds']:.2f} s" if proof["seconds"] is not None else ""
-    failure = f": {proof['failure']}" if proof["failure"] else ""
+    failure = f": {escaped(proof['failure'])}" if proof["failure"] else ""
     return f"{proof['status']}{method}{seconds}{failure}"
 
 
@@ -72,22 +88,24 @@ def _answers(report: Mapping[str, Any]) -> str:
     answers: list[tuple[str, str]] = []
     target = TARGETS.get(report["target"])
     if target is None or target.classifies:
+        care = report["care"]
         answers += [
             ("accuracy of the circuit", form(report["accuracy"], "percent")),
             ("accuracy of the model", form(report["model_accuracy"], "percent")),
-            ("pixel codes cared for", _cell(report["care"]["codes"])),
-            ("share of other imagery that these codes cover", form(report["care"]["coverage"], "percent")),
+            ("pixel codes cared for", form(care["codes"])),
+            ("share of other imagery that these codes cover", form(care["coverage"], "percent")),
         ]
     if edges["name"] is not None:
         answers += [
-            ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
+            ("edge patterns", f"{edges['name']}, {form(edges['patterns'])} of 512 windows"),
             *(
                 (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
                 for figure in ("precision", "recall", "f1")
             ),
-            ("measured on", _cell(edges["imagery"])),
+            ("measured on", form(edges["imagery"], "text")),
         ]
-    return f"## Answers\n\n{_table(['figure', 'value'], answers)}" if answers else ""
+    answers = [(figure, value) for figure, value in answers if value != MISSING]
+    return f"## Answers\n\n{table(['figure', 'value'], answers)}" if answers else ""
 
 
 def _utilisation(report: Mapping[str, Any]) -> str:
@@ -97,7 +115,7 @@ def _utilisation(report: Mapping[str, Any]) -> str:
     kinds = list(dict.fromkeys(kind for shares in parts.values() for kind in shares))
     rows = ([part, *(form(shares.get(kind), "points") for kind in kinds)] for part, shares in parts.items())
     heads = [_COLUMNS.get(kind, kind) for kind in kinds]
-    return f"## Share of the {report['device']}\n\n" + _table(["part", *heads], rows)
+    return f"## Share of the {report['device']}\n\n" + table(["part", *heads], rows)
 
 
 def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
@@ -105,21 +123,25 @@ def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
         return ""
     keys = ["cubes_before", "cubes_after", "literals_before", "literals_after"]
     rows = ([name, *(sizes[key] for key in keys)] for name, sizes in tables.items())
-    return "## Minimised\n\n" + _table(["table", *(key.replace("_", " ") for key in keys)], rows)
+    return "## Minimised\n\n" + table(["table", *(key.replace("_", " ") for key in keys)], rows)
+
+
+def _simulated(options: Mapping[str, Any]) -> str:
+    rows = [(part, options["simulated_vectors"][part], when) for part, when in simulations(options).items()]
+    return "## Simulated against the model\n\n" + table(["part", "vectors", "when"], rows) if rows else ""
+
+
+def _options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The plain ones, and those of mappings that are few."""
+    inner = {
+        f"{key}, {name}": value
+        for key, values in options.items()
+        if isinstance(values, Mapping) and key != "simulated_vectors" and len(values) <= MANY_TABLES
+        for name, value in values.items()
+        if value is not None
+    }
+    return plain_options(options) | inner
 
 
 def _mapping(title: str, what: str, values: Mapping[str, Any]) -> str:
-    return f"## {title}\n\n" + _table([what, "value"], values.items()) if values else ""
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(_cell(value) for value in line)} |" for line in lines)
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return MISSING
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return str(value).replace("|", "\\|").replace("\n", " ")
+    return f"## {title}\n\n" + table([what, "value"], values.items()) if values else ""

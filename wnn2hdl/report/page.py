@@ -3,6 +3,7 @@
 import base64
 import json
 import shlex
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,15 +13,19 @@ from markupsafe import Markup
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.lower.targets import TARGETS
-from wnn2hdl.report.charts import cube_bars, lut_bars
+from wnn2hdl.markdown import MISSING
+from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.schematic import draw
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-MISSING = "n/a"
-"""Stands where nothing was measured."""
+MANY_TABLES = 40
+"""More tables than these are summed up and not shown one by one."""
+
+_MANY_CELLS, _MANY_RAMS, _MANY_CLASSES = 150, 400, 30
+"""The same of LUTs and multiplexers in one drawing, of bars of saturation, and of classes in a confusion."""
 
 RESOURCES = {
     "luts": "LUTs",
@@ -35,8 +40,8 @@ RESOURCES = {
 
 _KINDS = {"luts": "LUTs", "ffs": "flip-flops", "bram36": "block RAMs", "dsp": "DSP slices"}
 
-_NOTES, _DEPTH = 12, 4
-"""Notes of a training that are shown, and how deep they may be nested."""
+_NOTES, _DEPTH, _SHOWN_BITS = 12, 4, 128
+"""Notes of a training that are shown, how deep they may be nested, and input bits that are named."""
 
 
 @dataclass(frozen=True)
@@ -76,14 +81,13 @@ class _Cell:
     inputs: tuple[str, ...]
 
 
-def environment() -> "Environment":
-    """The templates of this package, every value escaped."""
+def environment(*packages: str) -> "Environment":
+    """The templates of this package, and of others that extend them; every value is escaped."""
     # Not at the top: commands that write no page need not wait for it.
-    from jinja2 import Environment, PackageLoader
+    from jinja2 import ChoiceLoader, Environment, PackageLoader
 
-    return Environment(
-        loader=PackageLoader("wnn2hdl.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    loader = ChoiceLoader([PackageLoader(name) for name in ("wnn2hdl.report", *packages)])
+    return Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
 
 
 def build_page(
@@ -111,11 +115,14 @@ def build_page(
     measured = [part for part, figures in report["parts"].items() if figures["luts"] is not None]
     model = report.get("model")
     confusion = report.get("confusion")
+    drawn = {} if _are_many(networks) else networks
     return templates.get_template("build.html").render(
         report=report,
         what=target.description if target else f"A circuit of target {report['target']}",
         form=form,
         classifies=target is None or target.classifies,
+        # Not of an edge filter or a matcher, which are the same for every model.
+        model=model if target is None or target.classifies or "network" in report["parts"] else None,
         answers=target is None or target.classifies or target.has_edges,
         window=_window(window) if window else (),
         places={
@@ -129,20 +136,49 @@ def build_page(
         resource_heads={
             key: head
             for key, head in RESOURCES.items()
-            if key in ("luts", "delay_ps") or any(report["parts"][part].get(key) for part in measured)
+            if any(_tells(key, report["parts"][part].get(key)) for part in measured)
         },
+        shared_out=any(report["utilisation"].get(part) for part in measured),
         kinds=_KINDS,
         sum=_sum(report["parts"]),
-        circuits=[_circuit(templates, name, network) for name, network in networks.items()],
+        circuits=[_circuit(templates, name, network) for name, network in drawn.items()],
+        summed_up=_by_inputs(networks) if networks and not drawn else (),
         pictures=pictures,
         legend=legend,
         classes=model["classes"] if model else [f"class {i}" for i in range(len(confusion or ()))],
+        input_bits=_input_bits(model["bits"]) if model else "",
+        few_classes=len(confusion or ()) <= _MANY_CLASSES,
+        few_rams=model is not None and sum(map(len, model["saturation"])) <= _MANY_RAMS,
         notes=_notes(model["training"]) if model else [],
         training=_training(report["name"], model["training"]) if model else "",
-        options={key: value for key, value in report["options"].items() if not isinstance(value, Mapping)},
-        lut_chart=lut_bars(report),
-        cube_chart=cube_bars(report["minimised"]) if report["minimised"] else "",
+        options=plain_options(report["options"]),
+        simulations=simulations(report["options"]),
+        published=published(report),
+        lut_chart=for_all_widths(lut_bars, report),
+        few_covers=len(report["minimised"]) <= MANY_TABLES,
+        cubes=_total(report["minimised"]),
+        cube_chart=for_all_widths(cube_bars, report["minimised"])
+        if 0 < len(report["minimised"]) <= MANY_TABLES
+        else "",
     )
+
+
+def plain_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options that have a value, without those that are mappings and those that other tables show."""
+    return {
+        key: value
+        for key, value in options.items()
+        if value is not None and not isinstance(value, Mapping) and key != "simulated_before"
+    }
+
+
+def simulations(options: Mapping[str, Any]) -> dict[str, str]:
+    """When each part that counts as simulated was so: for this build, or before, on the same vectors."""
+    before = (options.get("simulated_before") or "").split(", ")
+    return {
+        part: "passed before on the same vectors" if part in before else "simulated for this build"
+        for part in options.get("simulated_vectors") or ()
+    }
 
 
 def figures_of(report: Mapping[str, Any]) -> Callable[..., Markup]:
@@ -198,6 +234,43 @@ def percent(share: float) -> str:
     return f"{100 * share:.{digits}f} %"
 
 
+def _tells(key: str, value: Any) -> bool:
+    """Whether a figure is worth a column: LUTs and delays wherever they were measured, others above 0."""
+    return value is not None if key in ("luts", "delay_ps") else bool(value)
+
+
+def _are_many(networks: Mapping[str, LutNetwork]) -> bool:
+    return (
+        len(networks) > MANY_TABLES or sum(len(network.cells) for network in networks.values()) > _MANY_CELLS
+    )
+
+
+def _by_inputs(networks: Mapping[str, LutNetwork]) -> list[dict[str, int]]:
+    """How many tables there are of each number of inputs, and what they take together."""
+    groups: dict[int, list[LutNetwork]] = defaultdict(list)
+    for network in networks.values():
+        groups[len(network.inputs)].append(network)
+    return [
+        {
+            "inputs": inputs,
+            "tables": len(group),
+            "luts": sum(len(network.luts) for network in group),
+            "muxes": sum(len(network.muxes) for network in group),
+            "depth": max(network.depth for network in group),
+        }
+        for inputs, group in sorted(groups.items())
+    ]
+
+
+def _total(minimised: Mapping[str, Mapping[str, int]]) -> dict[str, int]:
+    keys = ("cubes_before", "cubes_after", "literals_before", "literals_after")
+    return {key: sum(sizes[key] for sizes in minimised.values()) for key in keys}
+
+
+def _input_bits(names: Sequence[str]) -> str:
+    return " ".join(names) if len(names) <= _SHOWN_BITS else f"{len(names):,}: {names[0]} … {names[-1]}"
+
+
 def _circuit(templates: "Environment", name: str, network: LutNetwork) -> dict[str, Any]:
     drawing = draw(network)
     cells = {cell.name: _cell(name, i, cell, network) for i, cell in enumerate(network.cells)}
@@ -242,11 +315,15 @@ def _window(neighbourhood: Neighbourhood) -> list[list[str]]:
 
 
 def _sum(parts: Mapping[str, Mapping[str, Any]]) -> str:
-    """How a block comes to its LUTs, if it takes those of nine pixels and of an edge filter."""
-    block, pixel, edge = (parts.get(part, {}).get("luts") for part in ("block", "pixel", "edge"))
+    """How a block comes to its LUTs, if it takes those of nine pixels and of an edge filter; with matcher."""
+    names = ("block", "pixel", "edge", "match", "block_match")
+    block, pixel, edge, match, whole = (parts.get(part, {}).get("luts") for part in names)
     if block is None or pixel is None or edge is None or block != 9 * pixel + edge:
         return ""
-    return f"The block is nine pixels of {pixel} and an edge filter of {edge}: {block}."
+    text = f"The block is nine pixels of {pixel} and an edge filter of {edge}: {block}."
+    if match is None or whole is None or whole != block + match:
+        return text
+    return f"{text} With match and count, of {match}, it is block_match: {whole}."
 
 
 def _training(name: str, training: Mapping[str, Any]) -> str:

@@ -1,12 +1,13 @@
 """Charts tell their figures as text and in words, in the colours of the page."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
 
-from wnn2hdl.report.charts import cube_bars, lut_bars, scatter
+from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars, scatter
 
 HOSTILE = "<script>alert('x')</script> & $x^2$ -- \u6797 \"q\""
 
@@ -109,6 +110,29 @@ def test_luts_are_counted_in_whole_numbers() -> None:
 def test_cubes_of_a_constant_table_can_be_drawn(after: int) -> None:
     svg = cube_bars({"pixel": {"cubes_before": after, "cubes_after": after}})
     assert str(after) in texts(svg)
+
+
+def test_narrow_charts_say_the_same_in_less_width(report: dict[str, Any]) -> None:
+    points = [("a build of a long name, too long for a phone", 1, 0.9), ("b", 2, 0.8)]
+    charts: list[tuple[Callable[..., Any], Any]]
+    charts = [(lut_bars, report), (cube_bars, report["minimised"]), (scatter, points)]
+    for draw, argument in charts:
+        wide, narrow = (draw(argument, narrow=narrow) for narrow in (False, True))
+        assert for_all_widths(draw, argument) == wide + narrow
+        labels = [re.findall(r'aria-label="[^"]+"', svg) for svg in (wide, narrow)]
+        assert labels[0] == labels[1] != []
+        widths = [float(svg.split('viewBox="0 0 ')[1].split()[0]) for svg in (wide, narrow)]
+        assert widths[1] < 350 < widths[0]
+        assert not set(re.findall(r' id="([^"]+)"', wide)) & set(re.findall(r' id="([^"]+)"', narrow))
+    assert set(texts(lut_bars(report, narrow=True))) == set(texts(lut_bars(report)))
+    assert "a build of a long n…" in texts(scatter(points, narrow=True))
+
+
+def test_a_network_is_not_compared_with_published_circuits_for_pictures(report: dict[str, Any]) -> None:
+    report["parts"]["network"] = report["parts"].pop("block")
+    svg = lut_bars(report)
+    assert "135" not in texts(svg)
+    assert "Published" not in svg
 
 
 def test_the_same_figures_give_the_same_bytes(report: dict[str, Any]) -> None:

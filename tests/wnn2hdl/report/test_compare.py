@@ -61,6 +61,39 @@ def test_a_small_change_is_not_told_as_none(report: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("difference", "told"),
+    [
+        (0.0000038147, "+0.0004 points"),
+        (-0.0000038147, MINUS + "0.0004 points"),
+        (0.000096, "+0.01 points"),
+        (0.012345, "+1.23 points"),
+        (1e-9, "less than 0.0001 points more"),
+        (-1e-16, "less than 0.0001 points fewer"),
+    ],
+)
+def test_points_have_as_many_digits_as_a_person_reads(
+    report: dict[str, Any], difference: float, told: str
+) -> None:
+    other = report | {"accuracy": 0.5 + difference}
+    assert figures(report | {"accuracy": 0.5}, other)["accuracy of the circuit"].change == told
+
+
+def test_many_tables_are_summed_up() -> None:
+    one = {f"t{i}": lut("ab", 0b1000) for i in range(1000)}
+    changes = compare_tables(one, one | {"t7": lut("ab", 0b1001)})
+    assert [change.what for change in changes] == ["function of t7", "functions that are the same"]
+    assert changes[1].after == "999 of 1,000"
+
+
+def test_cubes_of_many_tables_are_summed_up(report: dict[str, Any]) -> None:
+    sizes = report["minimised"]["pixel"]
+    first = report | {"minimised": {f"t{i}": sizes for i in range(1000)}}
+    second = first | {"minimised": first["minimised"] | {"t7": sizes | {"cubes_after": 10}}}
+    told = [change for change in compare(first, second)["Figures"] if change.what.startswith("cubes")]
+    assert told == [Change("cubes of all 1,000 tables", "11,000", "10,999", MINUS + "1")]
+
+
+@pytest.mark.parametrize(
     ("after", "told"), [(0.91, "+1 points"), (1.0, "+10 points"), (0.915, "+1.5 points")]
 )
 def test_whole_points_have_no_decimal_point(report: dict[str, Any], after: float, told: str) -> None:

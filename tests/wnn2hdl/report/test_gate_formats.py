@@ -69,6 +69,19 @@ def test_markdown_without_a_baseline_has_no_columns_for_it(report: dict[str, Any
     assert "| amazon | ✓ passed | 19 | 91.65 % | proved |" in text
 
 
+def test_markdown_has_no_column_in_which_nothing_was_measured(report: dict[str, Any]) -> None:
+    report["accuracy"] = None
+    text = gate_markdown({"n/a": report}, (), {})
+    assert (
+        "| build | result | LUTs | proof |\n| --- | --- | ---: | --- |\n| n/a | ✓ passed | 19 | proved |"
+        in text
+    )
+    other = report | {"accuracy": 0.5}
+    text = gate_markdown({"a": report, "b": other}, (), None)
+    assert "| build | result | LUTs | accuracy | proof |" in text
+    assert "| a | ✓ passed | 19 | n/a | proved |" in text
+
+
 def test_markdown_tells_what_got_better(report: dict[str, Any]) -> None:
     before = recorded(report)
     report["parts"]["block"]["luts"] = 18
@@ -83,7 +96,7 @@ def test_no_name_breaks_the_table(name: str) -> None:
     report = {
         "target": "pixel",
         "mode": "exact",
-        "accuracy": None,
+        "accuracy": 0.5,
         "proof": {"status": "proved"},
         "parts": {"pixel": {"luts": 1}},
     }

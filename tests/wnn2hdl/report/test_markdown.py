@@ -52,7 +52,6 @@ def page(report: BuildReport) -> str:
         "| block | 0.034 % | 0 % |",
         "## Published, not measured here",
         "| accuracy of the circuit | 90.00 % |",
-        "| accuracy of the model | n/a |",
         "| pixel codes cared for | 120 |",
         "| pixel | 60 | 3 | 720 | 9 |",
         "| edges | boundary\\|learned |",
@@ -66,8 +65,36 @@ def test_every_figure_has_its_line(line: str) -> None:
 
 
 def test_what_was_not_measured_is_never_0() -> None:
-    assert "| sobel | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a |" in page(FULL)
+    parts = {"block": FIGURES, "pixel": PartFigures(luts=2)}
+    assert "| pixel | 2 | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a | n/a |" in page(
+        replace(FULL, parts=parts)
+    )
     assert "proof: not run." in page(replace(FULL, proof=Proof()))
+
+
+def test_rows_and_columns_in_which_nothing_was_measured_are_left_out() -> None:
+    lines = page(replace(FULL, parts={"block": PartFigures(luts=18), "sobel": PartFigures()})).splitlines()
+    assert lines[lines.index("| part | LUTs |") :][:3] == [
+        "| part | LUTs |",
+        "| --- | --- |",
+        "| block | 18 |",
+    ]
+    assert not [line for line in lines if line.startswith(("| sobel", "| accuracy of the model"))]
+    assert "Nothing was measured." in page(replace(FULL, parts={"block": PartFigures()}))
+
+
+def test_a_simulation_that_passed_before_is_told_as_such() -> None:
+    options = {
+        "edges": None,
+        "mapping": {"pixel": "decpla"},
+        "simulated_vectors": {"match": 262144, "pixel": 64},
+        "simulated_before": "match",
+    }
+    text = page(replace(FULL, options=options))
+    assert "| match | 262144 | passed before on the same vectors |" in text
+    assert "| pixel | 64 | simulated for this build |" in text
+    assert "| mapping, pixel | decpla |" in text
+    assert "| edges" not in text
 
 
 def test_it_says_that_yosys_is_not_vivado() -> None:

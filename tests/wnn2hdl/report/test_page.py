@@ -2,6 +2,7 @@
 
 import json
 import re
+import time
 from html.parser import HTMLParser
 from itertools import pairwise
 from typing import Any
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import BitSelect, LutNetwork, Neighbourhood, Tap
+from wnn2hdl.ir import BitSelect, Lut, LutNetwork, Neighbourhood, Tap
 from wnn2hdl.report.page import Picture, build_page, form, percent
 
 VOID = {"meta", "link", "img", "input", "br"}
@@ -125,6 +126,110 @@ def test_parts_that_were_not_measured_are_neither_listed_nor_drawn(
     assert "Schematic of edge" not in page
     assert 'class="overview"' not in page
     assert "parts.edge.luts" not in Outline(page).figures
+
+
+def test_columns_and_rows_in_which_nothing_was_measured_are_left_out(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    full = Outline(build_page(report, networks)).figures
+    for figures in report["parts"].values():
+        figures["delay_ps"] = None
+    report |= {"utilisation": {}, "model_accuracy": None}
+    report["care"] |= {"coverage": None}
+    report["proof"] |= {"seconds": None}
+    report["options"] |= {"palette": None}
+    page = build_page(report, networks)
+    figures = Outline(page).figures
+    gone = {"parts.block.delay_ps", "utilisation.block.luts", "care.coverage", "proof.seconds"}
+    assert gone < set(full)
+    assert not gone & set(figures)
+    assert "options.palette" not in figures
+    assert "share of LUTs" not in page
+    # What the paper has no figure of is published so.
+    assert [key for key, told in figures.items() if ("null", "n/a") in told] == ["published.1.registers"]
+
+
+def test_a_simulation_that_passed_before_is_told_as_such(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    report["options"] |= {"simulated_vectors": {"match": 262144, "pixel": 150}, "simulated_before": "match"}
+    page = build_page(report, networks)
+    rows = re.findall(r'<th scope="row">(\w+)</th><td class="number">.*?</td><td>([\w ]+)</td>', page)
+    assert rows[-2:] == [
+        ("match", "passed before on the same vectors"),
+        ("pixel", "simulated for this build"),
+    ]
+    assert "options.simulated_before" not in Outline(page).figures
+
+
+def test_how_the_block_and_its_matcher_add_up_is_said(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    words = "The block is nine pixels of 2 and an edge filter of 1: 19."
+    assert f"<p>{words}</p>" in build_page(report, networks)
+    report["parts"]["block_match"] = report["parts"]["match"] | {"luts": 29}
+    assert f"{words} With match and count, of 10, it is block_match: 29." in build_page(report, networks)
+
+
+@pytest.fixture
+def network_report(report: dict[str, Any]) -> dict[str, Any]:
+    """The report of a network of tables that has no discriminators, no pictures and no care set."""
+    parts = dict.fromkeys(("encoder", "core", "network"), report["parts"]["block"])
+    model: dict[str, Any] = {"address_bits": None, "rams": None, "bleaching": None, "saturation": []}
+    model |= {"classes": ["0", "1", "2"], "bits": [f"x{i}" for i in range(4000)], "training": {}}
+    report |= {"target": "network", "mode": "exact", "parts": parts, "model": model, "utilisation": {}}
+    report["edges"] = dict.fromkeys(report["edges"])
+    report["care"] = dict.fromkeys(report["care"])
+    report["confusion"] = None
+    return report
+
+
+def tables(count: int) -> dict[str, LutNetwork]:
+    names = tuple(f"x{i}" for i in range(6))
+    six = LutNetwork(names, (Lut("t0", names, 0x8000_0000_0000_0001),), (("f", "t0"),))
+    four = LutNetwork(names[:4], (Lut("t0", names[:4], 0x8001),), (("f", "t0"),))
+    return {f"node_{i}": six if i % 4 else four for i in range(count)}
+
+
+def test_a_network_without_discriminators_has_a_page(network_report: dict[str, Any]) -> None:
+    page = build_page(network_report, tables(3))
+    figures = Outline(page).figures
+    assert "LUTs of the network" in page
+    assert "4,000: x0 … x3999" in page
+    assert not [key for key in figures if key.startswith(("care", "model.", "parts.sobel"))]
+    assert "Saturation" not in page
+    assert page.count("Schematic of") == 3
+
+
+def test_a_page_of_a_thousand_tables_is_quick_and_small(network_report: dict[str, Any]) -> None:
+    sizes = network_report["minimised"]["pixel"]
+    network_report["minimised"] = {f"node_{i}": sizes for i in range(1000)}
+    network_report["options"]["mapping"] = {f"node_{i}": "decpla" for i in range(1000)}
+    network_report["model"] |= {"classes": [f"c{i}" for i in range(100)], "saturation": [[0.5] * 50] * 100}
+    network_report["confusion"] = [[10] * 100] * 100
+    networks = tables(1000)
+    build_page(network_report, {})
+    started = time.perf_counter()
+    page = build_page(network_report, networks)
+    assert time.perf_counter() - started < 2
+    assert len(page) < 300_000
+    assert "Schematic of" not in page
+    rows = re.findall(r"<tr>((?:<td class=\"number\">[\d,]+</td>){5})</tr>", page)
+    assert [re.findall(r"[\d,]+(?=<)", row) for row in rows] == [
+        ["4", "250", "250", "0", "1"],
+        ["6", "750", "750", "0", "1"],
+    ]
+    assert "all 1,000 together" in page
+    assert "119,000" in page
+
+
+def test_a_table_of_very_many_luts_is_not_drawn_either(network_report: dict[str, Any]) -> None:
+    names = tuple(f"x{i}" for i in range(6))
+    luts = tuple(Lut(f"t{i}", names, i + 1) for i in range(500))
+    wide = LutNetwork(names, luts, tuple((f"f{i}", f"t{i}") for i in range(500)))
+    page = build_page(network_report, {"core": wide})
+    assert "Schematic of" not in page
+    assert "too many look-up tables to draw" in page
 
 
 def test_a_part_of_several_networks_shows_them_all(

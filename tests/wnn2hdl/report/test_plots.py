@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 from PIL import Image
@@ -15,6 +16,17 @@ def test_plot_is_a_picture_and_a_drawing(tmp_path: Path) -> None:
     text = drawing.read_text()
     assert text.startswith("<?xml")
     assert {path.name for path in tmp_path.iterdir()} == {"front.png", "front.svg"}
+
+
+def test_the_drawing_follows_the_theme_and_the_picture_is_white(tmp_path: Path) -> None:
+    picture, drawing = plot_pareto(POINTS, POINTS[:2], tmp_path / "front")
+    with Image.open(picture) as opened:
+        assert opened.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
+    text = drawing.read_text()
+    assert "@media (prefers-color-scheme: dark) { :root { color: #e6e9e6; background: #141716; } }" in text
+    assert "fill: currentColor" in text
+    assert "stroke: currentColor" in text
+    assert not re.search(r"#(000000|000001|ffffff)", text)
 
 
 def test_same_points_give_the_same_bytes(tmp_path: Path) -> None:

@@ -1,13 +1,11 @@
 """Pictures of a flight: errors by method, and the tracks on the map; the same results give the same bytes."""
 
-import io
 import math
 from collections.abc import Callable
 from pathlib import Path
 
 import cv2
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -15,7 +13,8 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.apps.navigation.results import FAR_M, FlightResult, FrameFix, SearchResult
-from wnn2hdl.files import write_bytes
+from wnn2hdl.report.charts import INK
+from wnn2hdl.report.plots import plot_style, save_plot
 
 ToPixel = Callable[[ArrayLike, ArrayLike], tuple[NDArray[np.float64], NDArray[np.float64]]]
 """Rows and columns of a picture from latitudes and longitudes in degrees."""
@@ -33,15 +32,16 @@ _LEAST_ASPECT = 0.7
 """A straight track is shown with this much of its length beside it."""
 
 
+@plot_style()
 def plot_errors(result: FlightResult, path: Path) -> tuple[Path, Path]:
-    """Mean and standard deviation of each method's error, with each frame's error beside; a panel a search.
+    """Mean and standard deviation of each method's error, and each frame's error; one panel per search.
 
     Args:
         result: at least one search with one method.
         path: the picture without its suffix.
 
     Returns:
-        The two files written: PNG and SVG.
+        The two files written, as by `save_plot`.
 
     Raises:
         InputError: the folder does not exist or cannot be written.
@@ -53,7 +53,7 @@ def plot_errors(result: FlightResult, path: Path) -> tuple[Path, Path]:
         _draw_errors(axes, search)
     legend = "bars: mean ± standard deviation; dots: frames; arrows: frames further off"
     figure.supxlabel(legend, fontsize="small")
-    return _save(figure, path)
+    return save_plot(figure, path)
 
 
 def _draw_errors(axes: Axes, search: SearchResult) -> None:
@@ -66,22 +66,22 @@ def _draw_errors(axes: Axes, search: SearchResult) -> None:
         # A track has the colour of the method it is made of.
         colour = COLOURS[(place - alone if method.tracked else place) % len(COLOURS)]
         hatch = "//" if method.tracked else ""
-        axes.barh(place, method.mean_m, 0.6, color=colour, hatch=hatch, edgecolor="black", linewidth=0.6)
+        axes.barh(place, method.mean_m, 0.6, color=colour, hatch=hatch, edgecolor=INK, linewidth=0.6)
         spread = [[min(method.std_m, method.mean_m)], [method.std_m]]
-        axes.errorbar(method.mean_m, place, xerr=spread, color="black", capsize=4, linewidth=1.2)
+        axes.errorbar(method.mean_m, place, xerr=spread, color=INK, capsize=4, linewidth=1.2)
         # Errors of frames lie in the order of the flight, from the bar's top to its foot.
         heights = place + np.linspace(-0.25, 0.25, len(method.errors_m))
-        axes.plot(method.errors_m, heights, ".", color="0.25", markersize=3, alpha=0.6)
+        axes.plot(method.errors_m, heights, ".", color=INK, markersize=3, alpha=0.6)
         dots += list(zip(method.errors_m, heights, strict=True))
         far = max(far, 1.1 * (method.mean_m + method.std_m))
     # A few frames far off would press all bars together; they wait at the border.
     beyond = [height for error, height in dots if error > far]
-    axes.plot([0.985 * far] * len(beyond), beyond, ">", color="0.25", markersize=4, alpha=0.6)
-    axes.axvline(FAR_M, color="black", linestyle="--", linewidth=1)
+    axes.plot([0.985 * far] * len(beyond), beyond, ">", color=INK, markersize=4, alpha=0.6)
+    axes.axvline(FAR_M, color=INK, linestyle="--", linewidth=1)
     if search.blind_mean_m is not None:
-        axes.axvline(search.blind_mean_m, color="0.4", linestyle=":", linewidth=1.2)
+        axes.axvline(search.blind_mean_m, color=INK, linestyle=":", linewidth=1.2)
         axes.text(
-            search.blind_mean_m, -0.5, "blind guess ", ha="right", va="bottom", fontsize="small", color="0.3"
+            search.blind_mean_m, -0.5, "blind guess ", ha="right", va="bottom", fontsize="small", color=INK
         )
     axes.set_yticks(
         range(len(search.methods)), [f"{m.name}\n{_mean_and_std(m.mean_m, m.std_m)}" for m in search.methods]
@@ -90,13 +90,14 @@ def _draw_errors(axes: Axes, search: SearchResult) -> None:
     axes.set_xlim(0, far)
     axes.set_xlabel("error, m")
     axes.set_title(_title(search), fontsize="medium")
-    axes.grid(visible=True, axis="x", alpha=0.3)
+    axes.grid(visible=True, axis="x")
 
 
 def _mean_and_std(mean: float | None, std: float | None) -> str:
     return "no position" if mean is None or std is None else f"{mean:.1f} ± {std:.1f} m"
 
 
+@plot_style()
 def plot_tracks(
     search: SearchResult, picture: NDArray[np.uint8], to_pixel: ToPixel, gsd_m: float, path: Path
 ) -> tuple[Path, Path]:
@@ -109,11 +110,11 @@ def plot_tracks(
         search: at least one method, and one frame whose truth or position is known.
         picture: uint8 ``[rows, columns, 3]``, the map, north up.
         to_pixel: where positions lie in it.
-        gsd_m: metres a pixel.
+        gsd_m: metres per pixel.
         path: the picture without its suffix.
 
     Returns:
-        The two files written: PNG and SVG.
+        The two files written, as by `save_plot`.
 
     Raises:
         InputError: the folder does not exist or cannot be written.
@@ -161,8 +162,15 @@ def plot_tracks(
     axes.set_axis_off()
     _scale_bar(axes, (right - left) * gsd_m)
     figure.suptitle(_title(search), fontsize="medium")
-    figure.legend(loc="outside lower center", ncols=2, fontsize="small", facecolor="0.9")
-    return _save(figure, path)
+    figure.legend(
+        loc="outside lower center",
+        ncols=2,
+        fontsize="small",
+        frameon=True,
+        facecolor="0.9",
+        labelcolor="black",
+    )
+    return save_plot(figure, path)
 
 
 def _located(
@@ -215,14 +223,3 @@ def _title(search: SearchResult) -> str:
     if search.half_width_m is None:
         return "searched over the whole map"
     return f"searched within ±{search.half_width_m:g} m of the truth"
-
-
-def _save(figure: Figure, path: Path) -> tuple[Path, Path]:
-    picture, drawing = path.with_suffix(".png"), path.with_suffix(".svg")
-    # A date, or names drawn at random, would make equal plots differ.
-    with rc_context({"svg.hashsalt": "wnn2hdl"}):
-        for file, metadata in ((picture, {"Software": None}), (drawing, {"Date": None})):
-            stream = io.BytesIO()
-            figure.savefig(stream, format=file.suffix[1:], dpi=150, metadata=metadata)
-            write_bytes(file, stream.getvalue())
-    return picture, drawing

@@ -2,20 +2,20 @@
 
 import base64
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 
 from wnn2hdl.apps.sweep.pictures import draw_all
 from wnn2hdl.apps.sweep.pixels import PixelSets
 from wnn2hdl.apps.sweep.study import Outcome, circuits
 from wnn2hdl.files import write_text
+from wnn2hdl.report.page import environment
 
 PAGE_FILE = "index.html"
 
 _CAPTIONS = {
     "surface": "Mean accuracy over n and k.",
     "contour": "The same as a contour, finalists marked.",
-    "cost": "Logarithm of the mean LUTs a pixel.",
+    "cost": "Logarithm of the mean LUTs per pixel.",
     "finalists": "Accuracies of the finalists' valid trials.",
     "pareto": "Circuits by LUTs and accuracy, with the Pareto front.",
 }
@@ -55,12 +55,10 @@ def write_page(outcome: Outcome, sets: PixelSets, pictures: Sequence[str], folde
     Raises:
         InputError: the folder cannot be written.
     """
-    # Not at the top: commands that write no page need not wait for it.
-    from jinja2 import Environment, StrictUndefined
-
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    template = environment.from_string(files(__package__).joinpath("page.html").read_text(encoding="utf-8"))
+    template = environment("wnn2hdl.apps.sweep").get_template("sweep.html")
     recipe = outcome.plan.recipe
+    least = recipe.care_minimum or 0
+    at_least = f" at least {least} times" if least > 1 else ""
     path = folder / PAGE_FILE
     text = template.render(
         **outcome.to_json(),
@@ -68,10 +66,10 @@ def write_page(outcome: Outcome, sets: PixelSets, pictures: Sequence[str], folde
         pixels=sets.pixels,
         training_images=len(sets.training_images),
         held_out_images=len(sets.held_out_images),
-        mode="circuits equal the classifier on every code"
+        mode="Circuits equal the classifier on every code"
         if recipe.care_minimum is None
-        else "circuits equal the classifier on the codes that occur in the training images, at least "
-        f"{recipe.care_minimum} times each, and are free elsewhere",
+        else "Circuits equal the classifier on the codes that occur in the training images"
+        f"{at_least}, and are free elsewhere",
         seed=recipe.seed,
         bits=" ".join(recipe.bits),
         pictures=[

@@ -1,6 +1,5 @@
 """Pictures of a sweep, each as PNG and SVG; the same results give the same bytes."""
 
-import io
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +9,8 @@ import numpy as np
 from wnn2hdl.apps.sweep.grid import Cell
 from wnn2hdl.apps.sweep.selection import Finalist, Surface, label
 from wnn2hdl.apps.sweep.trial import Record
-from wnn2hdl.files import write_bytes
+from wnn2hdl.report.charts import INK
+from wnn2hdl.report.plots import plot_style, save_plot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 Points = tuple[Sequence[int], Sequence[float]]
 """LUTs and accuracies of a cloud of trials."""
 
-_SIZE = (6.4, 4.4)
+_SIZE = (5.4, 3.9)
 _LARGEST_CLOUD = 20_000
 _LUT_TICKS = (0, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 200, 500, 1000)
 _COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown")
 
 
+@plot_style()
 def draw_all(
     folder: Path,
     surface: Surface,
@@ -48,7 +49,6 @@ def draw_all(
         InputError: the folder cannot be written.
     """
     # Not at the top: commands that draw nothing need not wait for it.
-    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     drawings: dict[str, Callable[[Figure], None]] = {}
@@ -60,11 +60,10 @@ def draw_all(
         drawings["finalists"] = lambda figure: _histograms(figure, finalists)
     if any(front for _, _, front in clouds):
         drawings["pareto"] = lambda figure: _fronts(figure, clouds)
-    with rc_context({"svg.hashsalt": "wnn2hdl"}):
-        for name, drawing in drawings.items():
-            figure = Figure(figsize=_SIZE, layout="constrained")
-            drawing(figure)
-            _save(figure, folder / name)
+    for name, drawing in drawings.items():
+        figure = Figure(figsize=_SIZE, layout="constrained")
+        drawing(figure)
+        save_plot(figure, folder / name)
     return tuple(drawings)
 
 
@@ -105,7 +104,7 @@ def _cost_contour(figure: "Figure", surface: Surface, marked: Sequence[Cell]) ->
     # A constant classifier takes no LUT at all, so one is added before the logarithm.
     logarithm = np.ma.masked_invalid(np.log10(1 + surface.luts))
     filled = axes.contourf(surface.rams, surface.address_bits, logarithm, levels=14, cmap="magma")
-    figure.colorbar(filled, label="log10(1 + mean LUTs a pixel)")
+    figure.colorbar(filled, label="log10(1 + mean LUTs per pixel)")
     _architecture_axes(axes, surface, marked)
 
 
@@ -113,10 +112,12 @@ def _architecture_axes(axes: "Axes", surface: Surface, marked: Sequence[Cell]) -
     # Neighbours on a ridge would write over each other's labels, so marks are numbered.
     for number, (n, k) in enumerate(marked, 1):
         axes.plot(k, n, "o", color="white", markeredgecolor="black", markersize=11, clip_on=False, zorder=3)
-        axes.annotate(str(number), (k, n), ha="center", va="center", fontsize="small", zorder=4)
+        axes.annotate(
+            str(number), (k, n), ha="center", va="center", color="black", fontsize="small", zorder=4
+        )
     if marked:
         names = [f"{number}: n={n}, k={k}" for number, (n, k) in enumerate(marked, 1)]
-        axes.set_title("   ".join(names), fontsize="small")
+        axes.set_title("   ".join(names), fontsize="small", pad=10)
     axes.set_xlabel("RAMs k")
     axes.set_ylabel("address bits n")
     axes.set_xticks(surface.rams)
@@ -131,7 +132,7 @@ def _histograms(figure: "Figure", finalists: Sequence[Finalist]) -> None:
     edges = np.linspace(low, max(high, low + 0.1), 41)
     for axes, finalist, accuracies, colour in zip(rows, finalists, values, _COLOURS, strict=False):
         axes.hist(accuracies, bins=edges, color=colour)
-        axes.axvline(accuracies.mean(), color="black", linestyle="--", linewidth=1)
+        axes.axvline(accuracies.mean(), color=INK, linestyle="--", linewidth=1)
         title = f"{label(finalist.cell)}: mean {accuracies.mean():.1f} %, {len(accuracies)} valid trials"
         axes.set_title(title, loc="left", fontsize="small")
     rows[-1].set_xlabel("accuracy on held-out images, %")
@@ -148,7 +149,7 @@ def _fronts(figure: "Figure", clouds: Sequence[tuple[str, Points, Sequence[Recor
         # LUTs are whole numbers: a little noise shows how many trials share a place.
         place = np.array(luts[::step]) * np.exp(rng.uniform(-0.06, 0.06, len(height)))
         # Thousands of dots as vectors make a file that no browser likes.
-        axes.scatter(place, height, s=7, alpha=0.3, color=colour, linewidths=0, rasterized=True)
+        axes.scatter(place, height, s=8, alpha=0.5, color=colour, linewidths=0, rasterized=True)
         steps = [record.luts or 0 for record in front]
         best = [100 * (record.circuit_accuracy or 0) for record in front]
         axes.step(steps, best, where="post", marker="o", markersize=4, color=colour, label=f"{name}, front")
@@ -161,14 +162,7 @@ def _fronts(figure: "Figure", clouds: Sequence[tuple[str, Points, Sequence[Recor
     axes.set_xticks([tick for tick in _LUT_TICKS if tick <= most])
     axes.xaxis.set_major_formatter("{x:.0f}")
     axes.minorticks_off()
-    axes.set_xlabel("LUTs a pixel")
+    axes.set_xlabel("LUTs per pixel")
     axes.set_ylabel("accuracy of the circuit on held-out images, %")
-    axes.grid(visible=True, alpha=0.3)
+    axes.grid(visible=True)
     axes.legend(loc="lower right")
-
-
-def _save(figure: "Figure", path: Path) -> None:
-    for suffix, metadata in (("png", {"Software": None}), ("svg", {"Date": None})):
-        stream = io.BytesIO()
-        figure.savefig(stream, format=suffix, dpi=150, metadata=metadata)
-        write_bytes(path.with_suffix(f".{suffix}"), stream.getvalue())

@@ -28,7 +28,7 @@ class Surface:
         address_bits: n of each row.
         rams: k of each column.
         accuracy: float64 ``[rows, columns]``, of the classifiers on the held-out pixels.
-        luts: float64 ``[rows, columns]``, a pixel.
+        luts: float64 ``[rows, columns]``, per pixel.
         valid: int64 ``[rows, columns]``, valid trials; likewise ``saturated`` and ``failed``.
     """
 
@@ -191,7 +191,7 @@ def _reasons(
     comparisons: Mapping[tuple[Cell, Cell], tuple[Comparison, float]],
 ) -> str:
     def figures(finalist: Finalist) -> str:
-        return f"mean accuracy {finalist.accuracy:.4f}, {np.mean(finalist.luts):.1f} LUTs a pixel"
+        return f"mean accuracy {finalist.accuracy:.4f}, {np.mean(finalist.luts):.1f} LUTs per pixel"
 
     beaten = [
         f"{label(other)} (p = {p_value:.2g}, effect {comparison.effect:+.2f})"

@@ -37,7 +37,7 @@ class Record:
         saturation: share of the addresses that fire, in the discriminator where it is highest.
         accuracy: share of the held-out pixels that the trained classifier gets right.
         circuit_accuracy: the same of the mapped circuit, which is free outside of the care set.
-        luts: LUTs a pixel of the circuit.
+        luts: LUTs per pixel of the circuit.
         muxes: MUXF7 and MUXF8 beside them.
         levels: LUTs on the longest path.
         answers: digest of the classifier's answer to every code, to check a rebuilt one by.
