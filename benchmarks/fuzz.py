@@ -1,0 +1,497 @@
+"""Give every reader of files damaged ones, and count what it makes of them.
+
+``python benchmarks/fuzz.py --cases 500 --seed 1`` makes a small build and all other files that commands read,
+damages each of them ``--cases`` times and reads it with the function that the command calls; every
+``CLI_EVERY``-th goes through the command itself. A file is read, or refused by one line; anything else
+(another exception, a warning, more than ``SECONDS`` or ``MEMORY``) is a fault, and the status is then 1.
+"""
+
+import argparse
+import contextlib
+import io
+import json
+import random
+import re
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wnn2hdl.apps.navigation.camera import Camera
+from wnn2hdl.apps.navigation.poses import read_poses
+from wnn2hdl.build.classifier import circuit_classifier, open_classifier
+from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.design import DESIGN_FILE, Design
+from wnn2hdl.build.folder import REPORT_FILE
+from wnn2hdl.build.planning import CompileOptions
+from wnn2hdl.build.reporting import open_entries, read_report
+from wnn2hdl.cli import main as command_line
+from wnn2hdl.dataset import from_masks, from_regions
+from wnn2hdl.dataset.regions import REGION_COLUMNS
+from wnn2hdl.dataset.tables import read_table
+from wnn2hdl.edges import from_file
+from wnn2hdl.emit import MANIFEST_NAME
+from wnn2hdl.emit import check as check_manifest
+from wnn2hdl.encode import parse_bits
+from wnn2hdl.errors import Wnn2hdlError
+from wnn2hdl.evaluation.tagged import read_tags
+from wnn2hdl.files import write_bytes, write_json, write_text
+from wnn2hdl.images import Palette, read_rgb
+from wnn2hdl.ir import Thermometer, WisardModel
+from wnn2hdl.ir.models import load_model
+from wnn2hdl.lower.targets import Ingredients, target_for
+from wnn2hdl.raster import RasterReader, Reading
+from wnn2hdl.report import (
+    Limits,
+    gate_json,
+    gate_junit,
+    gate_markdown,
+    index_page,
+    read_baseline,
+    run_gate,
+    write_baseline,
+)
+from wnn2hdl.samples.flight import make_flight, write_flight
+from wnn2hdl.samples.landscapes import IMAGES, MASKS, write_landscapes
+from wnn2hdl.training.discriminators import train
+
+SECONDS = 20.0
+"""As long may reading a file take, on a busy machine."""
+
+MEMORY = 4 << 30
+"""So many bytes of addresses may the process take, all libraries included."""
+
+CLI_EVERY = 50
+
+LONGEST_LINE = 2500
+"""Characters of a line that a person still reads."""
+
+INTERESTING: tuple[Any, ...] = (
+    *(None, True, False, 0, 1, -1, 2, 63, 64, 65, 255, 256, 1 << 20, 1 << 31, 1 << 32, 1 << 63, 1 << 64),
+    *(10**30, -(10**30), 0.5, -0.0, 1e-300, 1e308, float("nan"), float("inf")),
+    *(
+        "",
+        " ",
+        "0",
+        "-1",
+        "x" * 5000,
+        "\0",
+        "\ud800",
+        "\n",
+        "../../etc/passwd",
+        "/dev/zero",
+        "*/",
+        "</script>",
+    ),
+    *("=1+1", "a|b", "\u202e", "\U0001f332", [], {}, [[]], [0] * 1000, {"": 0}),
+)
+"""Values that programs mistake."""
+
+TOKENS = (
+    *(
+        b"",
+        b"0",
+        b"-1",
+        b"00",
+        b"1e999",
+        b"NaN",
+        b"9" * 400,
+        b"9" * 5000,
+        b"inf",
+        b'"',
+        b"'",
+        b",",
+        b";",
+        b"\n",
+    ),
+    *(
+        b"\r",
+        b"\0",
+        b"\xff",
+        b"\xef\xbb\xbf",
+        b"[",
+        b"]",
+        b"{",
+        b"}",
+        b"[" * 100_000,
+        b"true",
+        b"1_000",
+        b"0x10",
+    ),
+    *(b"\xed\xa0\x80", b"x" * 200_000, b"=", b"#", b"1979-05-27", b"\\", b"/", b"-0", b".", b"1.", b"'''"),
+)
+"""Pieces of text that parsers mistake."""
+
+_TOKEN = re.compile(rb"\w+|\s+|[^\w\s]")
+
+
+@dataclass(frozen=True)
+class Reader:
+    """One kind of file.
+
+    Attributes:
+        name: of the kind.
+        file: a valid one; the damaged ones stand in its place.
+        read: does with it what commands do; raises Wnn2hdlError for a file that it refuses.
+        command: words of a command that reads it.
+    """
+
+    name: str
+    file: Path
+    read: Callable[[], object]
+    command: tuple[str, ...]
+
+
+@dataclass
+class Tally:
+    """What became of the files of a kind."""
+
+    ends: Counter[str] = field(default_factory=Counter)
+    faults: dict[str, str] = field(default_factory=dict)
+
+
+class Overtime(BaseException):
+    """A file took more than `SECONDS`."""
+
+
+def damaged(content: bytes, chance: random.Random) -> bytes:
+    """A file that something happened to: in its structure, in its text, or in its bytes."""
+    steps = [_bytes, _tokens]
+    with contextlib.suppress(ValueError):
+        json.loads(content)
+        steps += [_structure] * 4
+    for _ in range(chance.choice((1, 1, 1, 2, 5))):
+        content = chance.choice(steps)(content, chance)
+    return content
+
+
+def _bytes(content: bytes, chance: random.Random) -> bytes:
+    start, end = sorted(chance.randrange(len(content) + 1) for _ in range(2))
+    end = min(end, start + chance.choice((1, 4, 64, 1 << 20)))
+    flipped = bytes(byte ^ 1 << chance.randrange(8) for byte in content[start:end])
+    rest = content[end:]
+    return content[:start] + chance.choice(
+        (flipped + rest, rest, b"", content[start:end] * 2 + rest, chance.randbytes(9) + content[start:])
+    )
+
+
+def _tokens(content: bytes, chance: random.Random) -> bytes:
+    tokens = _TOKEN.findall(content[: 1 << 20]) or [b""]
+    place = chance.randrange(len(tokens))
+    match chance.randrange(4):
+        case 0:
+            tokens[place] = chance.choice(TOKENS)
+        case 1:
+            tokens[place] *= 2
+        case 2:
+            other = chance.randrange(len(tokens))
+            tokens[place], tokens[other] = tokens[other], tokens[place]
+        case _:
+            tokens.insert(place, chance.choice(TOKENS))
+    return b"".join(tokens)
+
+
+def _structure(content: bytes, chance: random.Random) -> bytes:
+    try:
+        data = json.loads(content)
+    except (ValueError, RecursionError):
+        return _tokens(content, chance)
+    places = [*_places(data)]
+    if not places:
+        return json.dumps(chance.choice(INTERESTING)).encode()
+    holder, key = chance.choice(places)
+    match chance.randrange(5):
+        case 0:
+            del holder[key]
+        case 1 if isinstance(holder, list):
+            holder.insert(key, holder[key])
+        case 1:
+            holder[str(chance.choice(INTERESTING))] = holder.pop(key)
+        case 2:
+            other, place = chance.choice(places)
+            with contextlib.suppress(KeyError, IndexError):
+                holder[key], other[place] = other[place], holder[key]
+        case _:
+            holder[key] = chance.choice(INTERESTING)
+    try:
+        return json.dumps(data).encode()
+    except (ValueError, RecursionError):
+        return content  # a value was put into itself
+
+
+def _places(data: Any) -> Iterator[tuple[Any, Any]]:
+    """Every place in a JSON value, but of long lists a few."""
+    if isinstance(data, dict):
+        keys: list[Any] = [*data]
+    elif isinstance(data, list):
+        keys = [*range(len(data))][:: max(1, len(data) // 20)]
+    else:
+        return
+    for key in keys:
+        yield data, key
+        yield from _places(data[key])
+
+
+def ending(read: Callable[[], object]) -> tuple[str, str]:
+    """How reading a file ended: ``read``, ``refused`` or a fault, and what there is to say about it."""
+
+    def expire(*_: object) -> None:
+        raise Overtime
+
+    signal.signal(signal.SIGALRM, expire)
+    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            read()
+    except Wnn2hdlError as error:
+        line = error.line()
+        if len(line) > LONGEST_LINE or not line.isprintable():
+            return "a line that nobody can read", line[:300]
+        return "refused", line
+    except OSError as error:
+        return "refused", str(error)  # the command line says it on one line
+    except (Exception, Overtime) as error:  # any other is what is looked for
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        return f"{type(error).__name__} in {Path(place.filename).name}:{place.lineno}", traceback.format_exc()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+    return "read", ""
+
+
+def through_command(words: tuple[str, ...]) -> None:
+    """Run a command in this process.
+
+    Raises:
+        AssertionError: it ends otherwise than a command may.
+        Wnn2hdlError: it refuses its input, on one line.
+    """
+    output, complaint = io.StringIO(), io.StringIO()
+    before, sys.argv = sys.argv, ["wnn2hdl", *words]
+    try:
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(complaint):
+            status = command_line()
+    finally:
+        sys.argv = before
+    if status not in (0, 1, 2):
+        raise AssertionError(f"status {status}")
+    if status == 2:
+        last = complaint.getvalue().splitlines()[-1]
+        if not last.startswith("wnn2hdl: ") or "Traceback" in complaint.getvalue():
+            raise AssertionError(last)
+        raise Wnn2hdlError(last)
+
+
+def fuzz(reader: Reader, cases: int, seed: int) -> Tally:
+    """Damage the file of a reader again and again; it is put back at the end."""
+    chance = random.Random(f"{seed} {reader.name}")
+    content = reader.file.read_bytes()
+    tally = Tally()
+    try:
+        for number in range(cases):
+            wrong = damaged(content, chance)
+            reader.file.write_bytes(wrong)
+            by_command = reader.command and number % CLI_EVERY == 0
+            end, text = ending((lambda: through_command(reader.command)) if by_command else reader.read)
+            tally.ends[end] += 1
+            if end not in ("read", "refused") and end not in tally.faults:
+                tally.faults[end] = text
+                kept = Path(tempfile.gettempdir()) / f"fuzz-{reader.name.replace(' ', '-')}-{number}"
+                kept.write_bytes(wrong)
+                tally.faults[end] += f"\nthe file: {kept}"
+    finally:
+        reader.file.write_bytes(content)
+    return tally
+
+
+def readers(folder: Path) -> list[Reader]:
+    """Every kind of file that a command reads, and a valid one of each in an empty folder."""
+    write_landscapes(folder / "scene", 2, 48, seed=5, progress=_silent)
+    images, masks = folder / "scene" / IMAGES, folder / "scene" / MASKS
+    palette = folder / "palette.json"
+    write_json(palette, {"forest": "#000000", "deforested": "#ffffff"})
+    dataset = from_masks(images, masks)
+    bits = parse_bits("R7,R6,R5,G7,G6,B7")
+    model = train(dataset, bits, address_bits=3, rams=4, bleaching=None, seed=0, progress=_silent)
+    file = folder / "model.json"
+    model.save(file)
+    features = folder / "features.json"
+    counts = np.random.default_rng(0).integers(0, 3, (2, 3, 4))
+    thresholds = Thermometer(((0.1, 0.5, 0.9), (2.0, 3.0)))
+    WisardModel(thresholds, ("a", "b"), np.array([[[0, 1], [2, 3], [4, 0]]]), counts, 1).save(features)
+    build = folder / "build"
+    options = CompileOptions(test_images=images, test_masks=masks)
+    assert compile_model(model, build, options, _silent).failure is None
+    baseline = folder / "baseline.json"
+    write_baseline(baseline, {"build": read_report(build)}, {"build": ()})
+    edges = folder / "edges.json"
+    write_text(edges, '{"patterns": [1, 56, "000111000", ["100", "100", "100"]]}\n')
+    picture, mask = sorted(images.iterdir())[0], sorted(masks.iterdir())[0]
+    flight = folder / "flight"
+    for _ in write_flight(flight, make_flight(0, (640, 640), frames=3)):
+        pass
+    jpeg = folder / "picture.jpg"
+    write_bytes(jpeg, sorted((flight / "frames").iterdir())[0].read_bytes())
+    regions = folder / "regions.csv"
+    rows = [f"{picture.name},forest,0,0,20,20", f"{picture.name},deforested,20,20,9,30"]
+    write_text(regions, "\n".join([",".join(REGION_COLUMNS), *rows]) + "\n")
+    tags = folder / "tags.csv"
+    write_text(tags, f"image_name,tags\n{picture.stem},clear primary\nnone,haze road\n")
+    table = folder / "table.csv"
+    write_text(table, "height,width,label\n1.5,2,a\n0.25,3e1,b\n-1,0,a\n")
+    place = str(build)
+
+    def of_model() -> None:
+        read = load_model(file)
+        if isinstance(read, WisardModel):
+            open_classifier(file)
+            target_for(read, "pixel" if read.encoder.kind == "bits" else None).lower(Ingredients(read))
+
+    def of_design() -> None:
+        design = Design.load(build)
+        design.specification.claims.values()
+        if design.care is not None:
+            circuit_classifier(design)
+
+    return [
+        Reader(
+            "model", file, of_model, ("evaluate", str(file), "--images", str(images), "--masks", str(masks))
+        ),
+        Reader(
+            "model of features",
+            features,
+            lambda: load_model(features),
+            ("compile", str(features), "-o", f"{folder}/x"),
+        ),
+        Reader("design", build / DESIGN_FILE, of_design, ("synth", place)),
+        Reader(
+            "report",
+            build / REPORT_FILE,
+            lambda: _show(build, baseline),
+            ("report", place, "--format", "json"),
+        ),
+        Reader(
+            "manifest",
+            build / MANIFEST_NAME,
+            lambda: check_manifest(build),
+            ("report", place, "--format", "markdown"),
+        ),
+        Reader(
+            "baseline",
+            baseline,
+            lambda: _show(build, baseline),
+            ("report", place, "--baseline", str(baseline), "--format", "junit"),
+        ),
+        Reader(
+            "palette",
+            palette,
+            lambda: Palette.read(palette).paint(np.zeros((2, 2), np.uint8)),
+            (
+                "train",
+                "--images",
+                str(images),
+                "--masks",
+                str(masks),
+                "--palette",
+                str(palette),
+                "-o",
+                f"{folder}/x.json",
+            ),
+        ),
+        Reader("edge patterns", edges, lambda: from_file(edges).table(), ()),
+        Reader(
+            "regions",
+            regions,
+            lambda: [*from_regions(regions, images, seed=0)],
+            ("train", "--regions", str(regions), "--chips", str(images), "-o", f"{folder}/x.json"),
+        ),
+        Reader(
+            "tags",
+            tags,
+            lambda: read_tags(tags),
+            ("evaluate", str(file), "--chips", str(images), "--tags", str(tags)),
+        ),
+        Reader("table", table, lambda: read_table(table, "label"), ()),
+        Reader("poses", flight / "poses.csv", lambda: read_poses(flight / "poses.csv"), ()),
+        Reader("camera", flight / "camera.toml", lambda: _look(flight / "camera.toml"), ()),
+        Reader(
+            "picture, PNG",
+            picture,
+            lambda: read_rgb(picture),
+            ("scan", str(file), str(picture), "-o", f"{folder}/scan"),
+        ),
+        Reader("picture, JPEG", jpeg, lambda: read_rgb(jpeg), ()),
+        Reader(
+            "mask",
+            mask,
+            lambda: [image.labels.sum() for image in from_masks(images, masks)],
+            ("train", "--images", str(images), "--masks", str(masks), "-o", f"{folder}/x.json"),
+        ),
+        Reader("map, GeoTIFF", flight / "map.tif", lambda: _read_raster(flight / "map.tif"), ()),
+    ]
+
+
+def _show(build: Path, baseline: Path) -> None:
+    """What `report` does, in all formats."""
+    entries = open_entries([build], build.parent / "index.html")
+    reports: Mapping[str, Any] = {entry.name: entry.report for entry in entries}
+    known = read_baseline(baseline)
+    checks = run_gate(reports, {"build": ()}, Limits(20, 0.5, 1), known)
+    index_page(entries, None, checks)
+    gate_markdown(reports, checks, known)
+    gate_json(reports, checks)
+    gate_junit(checks)
+
+
+def _look(path: Path) -> None:
+    camera = Camera.read(path)
+    camera.rays(np.array([0.0, camera.width - 1.0]), np.array([0.0, camera.height - 1.0]))
+
+
+def _read_raster(path: Path) -> None:
+    RasterReader(path, Reading()).thinned(32, 32)
+
+
+def _silent(step: str, done: int, total: int) -> None:
+    """No progress is shown."""
+
+
+def main() -> None:
+    """Print a table of files tried."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--cases", type=int, default=500, help="of each kind")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", help="kinds whose name holds this")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        kinds = [reader for reader in readers(Path(name)) if (options.only or "") in reader.name]
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        print("| file | tried | read | refused by one line | faults |\n| --- | --: | --: | --: | --: |")
+        faults: list[str] = []
+        for reader in kinds:
+            tally = fuzz(reader, options.cases, options.seed)
+            read, refused = tally.ends["read"], tally.ends["refused"]
+            wrong = options.cases - read - refused
+            print(f"| {reader.name} | {options.cases} | {read} | {refused} | {wrong} |", flush=True)
+            faults += [
+                f"{reader.name}, {tally.ends[end]}: {end}\n{text}" for end, text in tally.faults.items()
+            ]
+            shutil.rmtree(Path(name) / "scan", ignore_errors=True)
+    print("\n\n".join(faults))
+    sys.exit(bool(faults))
+
+
+if __name__ == "__main__":
+    main()
