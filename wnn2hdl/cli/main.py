@@ -12,7 +12,7 @@ import click
 import wnn2hdl
 from wnn2hdl.cli.commands import LazyGroup
 from wnn2hdl.cli.terminal import accept_any_text, say
-from wnn2hdl.errors import Wnn2hdlError
+from wnn2hdl.errors import Wnn2hdlError, printable
 
 INTERRUPTED = 128 + signal.SIGINT
 
@@ -121,5 +121,5 @@ def _complain(line: str, status: int) -> int:
         except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     with suppress(OSError):
-        say(f"wnn2hdl: {' '.join(line.split())}", error=True)
+        say(f"wnn2hdl: {printable(' '.join(line.split()))}", error=True)
     return status

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from wnn2hdl.errors import printable
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -171,6 +173,7 @@ def _label(axes: "Axes", texts: Mapping[tuple[float, float], str]) -> None:
 
 
 def _short(text: str, width: int = 56) -> str:
+    text = printable(text)
     return text if len(text) <= width else text[: width - 1].rstrip() + "…"
 
 
@@ -219,7 +222,7 @@ def _themed(figure: "Figure", title: str, prefix: str) -> Markup:
     text = re.sub(r"\s*<style.*?</style>|; font-family: [^;\"]*|<!--.*?-->", "", text, flags=re.DOTALL)
     text = re.sub(r' id="([^"]+)"', rf' id="{prefix}-\1"', text)
     text = re.sub(r'(xlink:href="#|url\(#)', rf"\1{prefix}-", text)
-    head = f'<svg class="chart" role="img" aria-label="{escape(title)}"'
+    head = f'<svg class="chart" role="img" aria-label="{escape(printable(title))}"'
     box = re.search(r'viewBox="[^"]+"', text)
     assert box is not None
     head = f'{head} {box[0]} xmlns:xlink="http://www.w3.org/1999/xlink">'

@@ -1,10 +1,11 @@
 """`report.json` as a page for a person."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from wnn2hdl.lower.targets import TARGETS
-from wnn2hdl.report.page import MISSING, form
+from wnn2hdl.markdown import escaped, table
+from wnn2hdl.report.page import form
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -35,10 +36,10 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         report: the object of `report.json`.
     """
     sections = [
-        f"# {report['name']}",
-        f"Target {report['target']}, mode {report['mode']}, proof: {_proof(report['proof'])}.",
+        f"# {escaped(report['name'])}",
+        f"Target {report['target']}, mode {report['mode']}, proof: {escaped(_proof(report['proof']))}.",
         "## Resources, measured",
-        _table(
+        table(
             ["part", *_COLUMNS.values()],
             ([part, *(figures[key] for key in _COLUMNS)] for part, figures in report["parts"].items()),
         ),
@@ -46,7 +47,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         _COUNTING,
         _utilisation(report),
         "## Published, not measured here",
-        _table(
+        table(
             ["circuit", "LUTs", "registers", "source"],
             ([row["what"], row["luts"], row["registers"], row["source"]] for row in report["published"]),
         ),
@@ -69,25 +70,25 @@ def _proof(proof: Mapping[str, Any]) -> str:
 
 def _answers(report: Mapping[str, Any]) -> str:
     edges = report["edges"]
-    answers: list[tuple[str, str]] = []
+    answers: list[tuple[str, str | None]] = []
     target = TARGETS.get(report["target"])
     if target is None or target.classifies:
         answers += [
             ("accuracy of the circuit", form(report["accuracy"], "percent")),
             ("accuracy of the model", form(report["model_accuracy"], "percent")),
-            ("pixel codes cared for", _cell(report["care"]["codes"])),
+            ("pixel codes cared for", form(report["care"]["codes"])),
             ("share of other imagery that these codes cover", form(report["care"]["coverage"], "percent")),
         ]
     if edges["name"] is not None:
         answers += [
-            ("edge patterns", f"{_cell(edges['name'])}, {_cell(edges['patterns'])} of 512 windows"),
+            ("edge patterns", f"{edges['name']}, {edges['patterns']} of 512 windows"),
             *(
                 (f"{figure} of its edges against Canny's, within one pixel", form(edges[figure], "percent"))
                 for figure in ("precision", "recall", "f1")
             ),
-            ("measured on", _cell(edges["imagery"])),
+            ("measured on", edges["imagery"]),
         ]
-    return f"## Answers\n\n{_table(['figure', 'value'], answers)}" if answers else ""
+    return f"## Answers\n\n{table(['figure', 'value'], answers)}" if answers else ""
 
 
 def _utilisation(report: Mapping[str, Any]) -> str:
@@ -97,7 +98,7 @@ def _utilisation(report: Mapping[str, Any]) -> str:
     kinds = list(dict.fromkeys(kind for shares in parts.values() for kind in shares))
     rows = ([part, *(form(shares.get(kind), "points") for kind in kinds)] for part, shares in parts.items())
     heads = [_COLUMNS.get(kind, kind) for kind in kinds]
-    return f"## Share of the {report['device']}\n\n" + _table(["part", *heads], rows)
+    return f"## Share of the {report['device']}\n\n" + table(["part", *heads], rows)
 
 
 def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
@@ -105,21 +106,8 @@ def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:
         return ""
     keys = ["cubes_before", "cubes_after", "literals_before", "literals_after"]
     rows = ([name, *(sizes[key] for key in keys)] for name, sizes in tables.items())
-    return "## Minimised\n\n" + _table(["table", *(key.replace("_", " ") for key in keys)], rows)
+    return "## Minimised\n\n" + table(["table", *(key.replace("_", " ") for key in keys)], rows)
 
 
 def _mapping(title: str, what: str, values: Mapping[str, Any]) -> str:
-    return f"## {title}\n\n" + _table([what, "value"], values.items()) if values else ""
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(_cell(value) for value in line)} |" for line in lines)
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return MISSING
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return str(value).replace("|", "\\|").replace("\n", " ")
+    return f"## {title}\n\n" + table([what, "value"], values.items()) if values else ""
