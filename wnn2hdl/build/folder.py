@@ -36,7 +36,7 @@ def staged(target: Path) -> Iterator[Path]:
             another process makes it.
     """
     # The folder that a link leads to is replaced, and the link stays.
-    target = _resolved(target)
+    target = resolved(target)
     require_replaceable(target)
     make_folder(target.parent)
     with held(target, "build"):
@@ -61,7 +61,8 @@ def _tidy(target: Path, staging: Path, earlier: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _resolved(target: Path) -> Path:
+def resolved(target: Path) -> Path:
+    """The folder that a path leads to, there or not; raises InputError if a link leads to itself."""
     try:
         return target.resolve()
     except (OSError, RuntimeError) as error:
