@@ -1,5 +1,6 @@
 """Reading and writing the project's JSON: whole files or nothing."""
 
+import errno
 import hashlib
 import json
 import math
@@ -24,6 +25,7 @@ PARTIAL = ".part"
 
 _NAME = 50
 """Letters of a file's name that its hidden name has."""
+
 _LONGEST_NAME = 200
 """Bytes of a name to which something can be added; a file system's names end at 255."""
 
@@ -71,7 +73,15 @@ def _encoded(text: str, path: Path) -> bytes:
 
 @contextmanager
 def _replacing(path: Path) -> Iterator[BinaryIO]:
-    """A new file that takes the place of another when all went well."""
+    """A new file that takes the place of another when all went well.
+
+    What a link leads to is replaced, and the link stays. A device or a pipe cannot be replaced: as root it
+    could, and would be gone for everybody.
+    """
+    path = Path(os.path.realpath(path))
+    with suppress(FileNotFoundError):
+        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
+            raise OSError(errno.EINVAL, "it is a device or a pipe")
     # Not by `tempfile`, whose files are for their owner's eyes only, whatever the umask says. A file system's
     # names end at 255 bytes, and a name that fits is to fit with what is added, too.
     temporary = path.with_name(f".{path.name[:_NAME]}.{secrets.token_hex(4)}{PARTIAL}")
@@ -149,29 +159,64 @@ def output_folder(path: Path, what: str) -> Iterator[None]:
     """
     new = not path.exists()
     make_folder(path)
-    lock = FileLock(path / LOCK_FILE, timeout=0)
     try:
-        with lock:
+        with _locked(path / LOCK_FILE, path, f"into the folder of this {what}"):
             for left in (*path.glob(f".*{PARTIAL}"), *path.glob(f"*/.*{PARTIAL}")):
                 if left.parent == path or not (left.parent / LOCK_FILE).exists():
                     left.unlink(missing_ok=True)
-            try:
-                yield
-            finally:
-                # Before the lock is given back, or another process might hold the file that goes.
-                with suppress(OSError):
-                    (path / LOCK_FILE).unlink()
-    except Timeout as error:
-        raise InputError(
-            f"another process is writing into the folder of this {what}",
-            value=path,
-            hint="wait until it ends, or choose another folder",
-        ) from error
+            yield
     except BaseException:
         if new:
             with suppress(OSError):
                 path.rmdir()
         raise
+
+
+@contextmanager
+def held(path: Path, what: str) -> Iterator[None]:
+    """As `output_folder`, for one file or folder that is made among others; its own folder has to exist.
+
+    Args:
+        path: what is made; it need not exist.
+        what: what it is, for the error: "build".
+
+    Raises:
+        InputError: another process makes it, or its folder cannot be written.
+    """
+    with _locked(beside(path, LOCK_FILE), path, f"this {what}"):
+        yield
+
+
+@contextmanager
+def _locked(place: Path, path: Path, what: str) -> Iterator[None]:
+    """A lock, held at ``place``, for whoever writes ``path``; ``what`` it is for the error."""
+    try:
+        # A place that cannot be written would look like one that another process holds.
+        place.touch()
+    except OSError as error:
+        raise _unwritable(path, error) from error
+    try:
+        with FileLock(place, timeout=0):
+            try:
+                yield
+            finally:
+                # Before the lock is given back, or another process might hold the file that goes.
+                with suppress(OSError):
+                    place.unlink()
+    except Timeout as error:
+        raise InputError(
+            f"another process is writing {what}",
+            value=path,
+            hint="wait until it ends, or choose another place",
+        ) from error
+
+
+def beside(path: Path, suffix: str) -> Path:
+    """A hidden name in the same folder, always the same for a path."""
+    name = path.name
+    if len(os.fsencode(name)) > _LONGEST_NAME:
+        name = hashlib.sha256(os.fsencode(name)).hexdigest()
+    return path.with_name(f".{name}{suffix}")
 
 
 def read_json_value(path: Path, what: str) -> Any:
@@ -215,51 +260,6 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
 def write_json(path: Path, data: dict[str, Any]) -> None:
     """Write a JSON object, indented, in the order given; the same data give the same bytes."""
     write_text(path, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
-
-
-@contextmanager
-def held(path: Path, what: str) -> Iterator[None]:
-    """Keep other processes from making the same file or folder meanwhile; its own folder has to exist.
-
-    The system drops the lock of a process that ends, however it ends, so that no lock outlives its process.
-
-    Args:
-        path: what is made; it need not exist.
-        what: what makes it, for the error: "build".
-
-    Raises:
-        InputError: another process makes it, or its folder cannot be written.
-    """
-    place = beside(path, ".lock")
-    try:
-        # A place that cannot be written would look like one that another process holds.
-        place.touch()
-    except OSError as error:
-        raise InputError(
-            "cannot write", value=f"{path} ({error.strerror})", hint="choose another place"
-        ) from error
-    try:
-        with FileLock(place, timeout=0):
-            try:
-                yield
-            finally:
-                # Before the lock is given back, or another process might hold the file that goes.
-                with suppress(OSError):
-                    place.unlink()
-    except Timeout as error:
-        raise InputError(
-            f"another process is writing this {what}",
-            value=path,
-            hint="wait until it ends, or choose another place",
-        ) from error
-
-
-def beside(path: Path, suffix: str) -> Path:
-    """A hidden name in the same folder, always the same for a path."""
-    name = path.name
-    if len(os.fsencode(name)) > _LONGEST_NAME:
-        name = hashlib.sha256(os.fsencode(name)).hexdigest()
-    return path.with_name(f".{name}{suffix}")
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -40,7 +40,7 @@ def staged(target: Path) -> Iterator[Path]:
     require_replaceable(target)
     make_folder(target.parent)
     with held(target, "build"):
-        staging, earlier = beside(target, ".part"), beside(target, ".earlier")
+        staging, earlier = beside(target, ".new"), beside(target, ".earlier")
         _tidy(target, staging, earlier)
         make_folder(staging)
         try:

@@ -76,8 +76,8 @@ class Threshold:
     at_least: int
 
     def __post_init__(self) -> None:
-        if width_of(self.word) > MAX_NUMBER or self.at_least < 0:
-            raise ValueError(f"{self.name} compares {width_of(self.word)} bits with {self.at_least}")
+        if width_of(self.word) > MAX_NUMBER:
+            raise ValueError(f"{self.name} compares words of more than {MAX_NUMBER} bits")
 
     @property
     def constant(self) -> bool | None:
