@@ -1,6 +1,6 @@
 """Give every reader of files damaged ones, and count what it makes of them.
 
-``python benchmarks/fuzz.py --cases 500 --seed 1`` makes a small build and all other files that commands read,
+``python -m benchmarks.fuzz --cases 500 --seed 1`` makes a small build and all other files that commands read,
 damages each of them ``--cases`` times and reads it with the function that the command calls; every
 ``CLI_EVERY``-th goes through the command itself. A file is read, or refused by one line; anything else
 (another exception, a warning, more than ``SECONDS`` or ``MEMORY``) is a fault, and the status is then 1.

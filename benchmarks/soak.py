@@ -19,6 +19,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from PIL import Image
@@ -212,29 +213,32 @@ class Soak:
 
 def _whole(place: Path) -> Iterator[tuple[Path, Callable[[], object]]]:
     """What is there by its final name, and a function that raises if it is not whole."""
-
-    def build(path: Path) -> None:
-        changed = check_manifest(path)
-        assert not changed, changed
-
-    def page(path: Path, last: str) -> None:
-        assert path.read_text().rstrip().endswith(last)
-
     if (path := place / "model.json").exists():
-        yield path, lambda path=path: WisardModel.load(path)
+        yield path, partial(WisardModel.load, path)
     if (path := place / "build").exists():
-        yield path, lambda path=path: build(path)
-    for name, last in (
-        ("index.html", "</html>"),
-        ("gate.xml", "</testsuites>"),
-        ("sweep/index.html", "</html>"),
-    ):
+        yield path, partial(_unchanged, path)
+    pages = {"index.html": "</html>", "gate.xml": "</testsuites>", "sweep/index.html": "</html>"}
+    for name, last in pages.items():
         if (path := place / name).exists():
-            yield path, lambda path=path, last=last: page(path, last)
+            yield path, partial(_ends, path, last)
     for path in place.glob("s*/**/*.json"):
-        yield path, lambda path=path: read_json(path, "a result")
+        yield path, partial(read_json, path, "a result")
     for path in (*place.glob("s*/**/*.png"), *place.glob("s*/**/*.tif")):
-        yield path, lambda path=path: Image.open(path).load()
+        yield path, partial(_decoded, path)
+
+
+def _unchanged(build: Path) -> None:
+    changed = check_manifest(build)
+    assert not changed, changed
+
+
+def _ends(page: Path, last: str) -> None:
+    assert page.read_text().rstrip().endswith(last)
+
+
+def _decoded(picture: Path) -> None:
+    with Image.open(picture) as image:
+        image.load()
 
 
 def _living(mark: str) -> list[str]:

@@ -296,7 +296,7 @@ def test_a_damaged_tap_is_told(tmp_path: Path, key: str, value: Any, message: st
 def test_counts_are_not_allocated_before_they_are_found_too_many(tmp_path: Path) -> None:
     data = hand_worked().to_json()
     # 2,000 RAMs of 2**20 counts in less than a megabyte: 32 GB.
-    rams = [{"addresses": [], "counts": []}] * 1000
+    rams: list[dict[str, list[int]]] = [{"addresses": [], "counts": []}] * 1000
     taps = [[[0] * 20] * 1000]
     data |= {"address_bits": 20, "rams": 1000, "mapping": taps, "counts": [rams, rams]}
     path = tmp_path / "model.json"
