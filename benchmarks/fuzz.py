@@ -9,9 +9,7 @@ damages each of them ``--cases`` times and reads it with the function that the c
 import argparse
 import contextlib
 import io
-import json
 import random
-import re
 import resource
 import shutil
 import signal
@@ -27,29 +25,33 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.damage import damaged
 from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.poses import read_poses
+from wnn2hdl.build.checking import synthesise_parts
 from wnn2hdl.build.classifier import circuit_classifier, open_classifier
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.design import DESIGN_FILE, Design
 from wnn2hdl.build.folder import REPORT_FILE
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.build.reporting import open_entries, read_report
+from wnn2hdl.build.statements import false_statements
+from wnn2hdl.build.verification import inspect_build, open_build
 from wnn2hdl.cli import main as command_line
-from wnn2hdl.dataset import from_masks, from_regions
+from wnn2hdl.dataset import LabelledImage, from_masks, from_regions
 from wnn2hdl.dataset.regions import REGION_COLUMNS
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.edges import from_file
 from wnn2hdl.emit import MANIFEST_NAME
-from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.encode import parse_bits
 from wnn2hdl.errors import Wnn2hdlError
 from wnn2hdl.evaluation.tagged import read_tags
-from wnn2hdl.files import write_bytes, write_json, write_text
+from wnn2hdl.files import write_json, write_text
 from wnn2hdl.images import Palette, read_rgb
 from wnn2hdl.ir import Thermometer, WisardModel
 from wnn2hdl.ir.models import load_model
 from wnn2hdl.lower.targets import Ingredients, target_for
+from wnn2hdl.markdown import head, row
 from wnn2hdl.raster import RasterReader, Reading
 from wnn2hdl.report import (
     Limits,
@@ -75,64 +77,6 @@ CLI_EVERY = 50
 
 LONGEST_LINE = 2500
 """Characters of a line that a person still reads."""
-
-INTERESTING: tuple[Any, ...] = (
-    *(None, True, False, 0, 1, -1, 2, 63, 64, 65, 255, 256, 1 << 20, 1 << 31, 1 << 32, 1 << 63, 1 << 64),
-    *(10**30, -(10**30), 0.5, -0.0, 1e-300, 1e308, float("nan"), float("inf")),
-    *(
-        "",
-        " ",
-        "0",
-        "-1",
-        "x" * 5000,
-        "\0",
-        "\ud800",
-        "\n",
-        "../../etc/passwd",
-        "/dev/zero",
-        "*/",
-        "</script>",
-    ),
-    *("=1+1", "a|b", "\u202e", "\U0001f332", [], {}, [[]], [0] * 1000, {"": 0}),
-)
-"""Values that programs mistake."""
-
-TOKENS = (
-    *(
-        b"",
-        b"0",
-        b"-1",
-        b"00",
-        b"1e999",
-        b"NaN",
-        b"9" * 400,
-        b"9" * 5000,
-        b"inf",
-        b'"',
-        b"'",
-        b",",
-        b";",
-        b"\n",
-    ),
-    *(
-        b"\r",
-        b"\0",
-        b"\xff",
-        b"\xef\xbb\xbf",
-        b"[",
-        b"]",
-        b"{",
-        b"}",
-        b"[" * 100_000,
-        b"true",
-        b"1_000",
-        b"0x10",
-    ),
-    *(b"\xed\xa0\x80", b"x" * 200_000, b"=", b"#", b"1979-05-27", b"\\", b"/", b"-0", b".", b"1.", b"'''"),
-)
-"""Pieces of text that parsers mistake."""
-
-_TOKEN = re.compile(rb"\w+|\s+|[^\w\s]")
 
 
 @dataclass(frozen=True)
@@ -162,84 +106,6 @@ class Tally:
 
 class Overtime(BaseException):
     """A file took more than `SECONDS`."""
-
-
-def damaged(content: bytes, chance: random.Random) -> bytes:
-    """A file that something happened to: in its structure, in its text, or in its bytes."""
-    steps = [_bytes, _tokens]
-    with contextlib.suppress(ValueError):
-        json.loads(content)
-        steps += [_structure] * 4
-    for _ in range(chance.choice((1, 1, 1, 2, 5))):
-        content = chance.choice(steps)(content, chance)
-    return content
-
-
-def _bytes(content: bytes, chance: random.Random) -> bytes:
-    start, end = sorted(chance.randrange(len(content) + 1) for _ in range(2))
-    end = min(end, start + chance.choice((1, 4, 64, 1 << 20)))
-    flipped = bytes(byte ^ 1 << chance.randrange(8) for byte in content[start:end])
-    rest = content[end:]
-    return content[:start] + chance.choice(
-        (flipped + rest, rest, b"", content[start:end] * 2 + rest, chance.randbytes(9) + content[start:])
-    )
-
-
-def _tokens(content: bytes, chance: random.Random) -> bytes:
-    tokens = _TOKEN.findall(content[: 1 << 20]) or [b""]
-    place = chance.randrange(len(tokens))
-    match chance.randrange(4):
-        case 0:
-            tokens[place] = chance.choice(TOKENS)
-        case 1:
-            tokens[place] *= 2
-        case 2:
-            other = chance.randrange(len(tokens))
-            tokens[place], tokens[other] = tokens[other], tokens[place]
-        case _:
-            tokens.insert(place, chance.choice(TOKENS))
-    return b"".join(tokens)
-
-
-def _structure(content: bytes, chance: random.Random) -> bytes:
-    try:
-        data = json.loads(content)
-    except (ValueError, RecursionError):
-        return _tokens(content, chance)
-    places = [*_places(data)]
-    if not places:
-        return json.dumps(chance.choice(INTERESTING)).encode()
-    holder, key = chance.choice(places)
-    match chance.randrange(5):
-        case 0:
-            del holder[key]
-        case 1 if isinstance(holder, list):
-            holder.insert(key, holder[key])
-        case 1:
-            holder[str(chance.choice(INTERESTING))] = holder.pop(key)
-        case 2:
-            other, place = chance.choice(places)
-            with contextlib.suppress(KeyError, IndexError):
-                holder[key], other[place] = other[place], holder[key]
-        case _:
-            holder[key] = chance.choice(INTERESTING)
-    try:
-        return json.dumps(data).encode()
-    except (ValueError, RecursionError):
-        return content  # a value was put into itself
-
-
-def _places(data: Any) -> Iterator[tuple[Any, Any]]:
-    """Every place in a JSON value, but of long lists a few."""
-    if isinstance(data, dict):
-        keys: list[Any] = [*data]
-    elif isinstance(data, list):
-        keys = [*range(len(data))][:: max(1, len(data) // 20)]
-    else:
-        return
-    for key in keys:
-        yield data, key
-        yield from _places(data[key])
 
 
 def ending(read: Callable[[], object]) -> tuple[str, str]:
@@ -318,38 +184,14 @@ def readers(folder: Path) -> list[Reader]:
     """Every kind of file that a command reads, and a valid one of each in an empty folder."""
     write_landscapes(folder / "scene", 2, 48, seed=5, progress=_silent)
     images, masks = folder / "scene" / IMAGES, folder / "scene" / MASKS
-    palette = folder / "palette.json"
-    write_json(palette, {"forest": "#000000", "deforested": "#ffffff"})
-    dataset = from_masks(images, masks)
+    labelled = ("--images", str(images), "--masks", str(masks))
+    picture, mask = sorted(images.iterdir())[0], sorted(masks.iterdir())[0]
     bits = parse_bits("R7,R6,R5,G7,G6,B7")
+    dataset = from_masks(images, masks)
     model = train(dataset, bits, address_bits=3, rams=4, bleaching=None, seed=0, progress=_silent)
     file = folder / "model.json"
     model.save(file)
-    features = folder / "features.json"
-    counts = np.random.default_rng(0).integers(0, 3, (2, 3, 4))
-    thresholds = Thermometer(((0.1, 0.5, 0.9), (2.0, 3.0)))
-    WisardModel(thresholds, ("a", "b"), np.array([[[0, 1], [2, 3], [4, 0]]]), counts, 1).save(features)
-    build = folder / "build"
-    options = CompileOptions(test_images=images, test_masks=masks)
-    assert compile_model(model, build, options, _silent).failure is None
-    baseline = folder / "baseline.json"
-    write_baseline(baseline, {"build": read_report(build)}, {"build": ()})
-    edges = folder / "edges.json"
-    write_text(edges, '{"patterns": [1, 56, "000111000", ["100", "100", "100"]]}\n')
-    picture, mask = sorted(images.iterdir())[0], sorted(masks.iterdir())[0]
-    flight = folder / "flight"
-    for _ in write_flight(flight, make_flight(0, (640, 640), frames=3)):
-        pass
-    jpeg = folder / "picture.jpg"
-    write_bytes(jpeg, sorted((flight / "frames").iterdir())[0].read_bytes())
-    regions = folder / "regions.csv"
-    rows = [f"{picture.name},forest,0,0,20,20", f"{picture.name},deforested,20,20,9,30"]
-    write_text(regions, "\n".join([",".join(REGION_COLUMNS), *rows]) + "\n")
-    tags = folder / "tags.csv"
-    write_text(tags, f"image_name,tags\n{picture.stem},clear primary\nnone,haze road\n")
-    table = folder / "table.csv"
-    write_text(table, "height,width,label\n1.5,2,a\n0.25,3e1,b\n-1,0,a\n")
-    place = str(build)
+    aside = str(folder / "aside.json")
 
     def of_model() -> None:
         read = load_model(file)
@@ -357,88 +199,102 @@ def readers(folder: Path) -> list[Reader]:
             open_classifier(file)
             target_for(read, "pixel" if read.encoder.kind == "bits" else None).lower(Ingredients(read))
 
-    def of_design() -> None:
-        design = Design.load(build)
-        design.specification.claims.values()
-        if design.care is not None:
-            circuit_classifier(design)
-
     return [
-        Reader(
-            "model", file, of_model, ("evaluate", str(file), "--images", str(images), "--masks", str(masks))
-        ),
-        Reader(
-            "model of features",
-            features,
-            lambda: load_model(features),
-            ("compile", str(features), "-o", f"{folder}/x"),
-        ),
-        Reader("design", build / DESIGN_FILE, of_design, ("synth", place)),
-        Reader(
-            "report",
-            build / REPORT_FILE,
-            lambda: _show(build, baseline),
-            ("report", place, "--format", "json"),
-        ),
-        Reader(
-            "manifest",
-            build / MANIFEST_NAME,
-            lambda: check_manifest(build),
-            ("report", place, "--format", "markdown"),
-        ),
-        Reader(
-            "baseline",
-            baseline,
-            lambda: _show(build, baseline),
-            ("report", place, "--baseline", str(baseline), "--format", "junit"),
-        ),
-        Reader(
-            "palette",
-            palette,
-            lambda: Palette.read(palette).paint(np.zeros((2, 2), np.uint8)),
-            (
-                "train",
-                "--images",
-                str(images),
-                "--masks",
-                str(masks),
-                "--palette",
-                str(palette),
-                "-o",
-                f"{folder}/x.json",
-            ),
-        ),
-        Reader("edge patterns", edges, lambda: from_file(edges).table(), ()),
-        Reader(
-            "regions",
-            regions,
-            lambda: [*from_regions(regions, images, seed=0)],
-            ("train", "--regions", str(regions), "--chips", str(images), "-o", f"{folder}/x.json"),
-        ),
-        Reader(
-            "tags",
-            tags,
-            lambda: read_tags(tags),
-            ("evaluate", str(file), "--chips", str(images), "--tags", str(tags)),
-        ),
-        Reader("table", table, lambda: read_table(table, "label"), ()),
-        Reader("poses", flight / "poses.csv", lambda: read_poses(flight / "poses.csv"), ()),
-        Reader("camera", flight / "camera.toml", lambda: _look(flight / "camera.toml"), ()),
-        Reader(
-            "picture, PNG",
-            picture,
-            lambda: read_rgb(picture),
-            ("scan", str(file), str(picture), "-o", f"{folder}/scan"),
-        ),
-        Reader("picture, JPEG", jpeg, lambda: read_rgb(jpeg), ()),
+        Reader("model", file, of_model, ("evaluate", str(file), *labelled)),
+        Reader("picture, PNG", picture, lambda: read_rgb(picture), ("evaluate", str(file), *labelled)),
         Reader(
             "mask",
             mask,
-            lambda: [image.labels.sum() for image in from_masks(images, masks)],
-            ("train", "--images", str(images), "--masks", str(masks), "-o", f"{folder}/x.json"),
+            lambda: [*map(_labels, from_masks(images, masks))],
+            ("train", *labelled, "-o", aside),
         ),
-        Reader("map, GeoTIFF", flight / "map.tif", lambda: _read_raster(flight / "map.tif"), ()),
+        *_of_features(folder),
+        *_of_builds(folder, model, CompileOptions(test_images=images, test_masks=masks)),
+        *_of_training(folder, images, labelled, file),
+        *_of_flights(folder / "flight"),
     ]
+
+
+def _labels(image: LabelledImage) -> int:
+    return int(image.labels.sum())
+
+
+def _of_features(folder: Path) -> Iterator[Reader]:
+    file = folder / "features.json"
+    counts = np.random.default_rng(0).integers(0, 3, (2, 3, 4))
+    thresholds = Thermometer(((0.1, 0.5, 0.9), (2.0, 3.0)))
+    WisardModel(thresholds, ("a", "b"), np.array([[[0, 1], [2, 3], [4, 0]]]), counts, 1).save(file)
+    words = ("compile", str(file), "-o", str(folder / "aside"))
+    yield Reader("model of features", file, lambda: load_model(file), words)
+    table = folder / "table.csv"
+    write_text(table, "height,width,label\n1.5,2,a\n0.25,3e1,b\n-1,0,a\n")
+    words = ("evaluate", str(file), "--table", str(table), "--label", "label")
+    yield Reader("table", table, lambda: read_table(table, "label"), words)
+
+
+def _of_builds(folder: Path, model: WisardModel, options: CompileOptions) -> Iterator[Reader]:
+    build, baseline = folder / "build", folder / "baseline.json"
+    assert compile_model(model, build, options, _silent).failure is None
+    write_baseline(baseline, {"build": read_report(build)}, {"build": ()})
+    design, files, _ = open_build(build)
+    counted = synthesise_parts(design, files, _silent)
+
+    def inspect() -> None:
+        _, found = inspect_build(build)
+        if found is not None:
+            false_statements(found[0], found[2], counted)
+
+    def of_design() -> None:
+        circuit_classifier(Design.load(build))
+        inspect()
+
+    def of_report() -> None:
+        _show(build, baseline)
+        inspect()
+
+    report = ("report", str(build))
+    yield Reader("design", build / DESIGN_FILE, of_design, ("verify", str(build)))
+    yield Reader("report", build / REPORT_FILE, of_report, (*report, "--format", "json"))
+    yield Reader("manifest", build / MANIFEST_NAME, inspect, (*report, "--format", "markdown"))
+    yield Reader("Verilog", files.verilog, inspect, ("verify", str(build)))
+    words = (*report, "--baseline", str(baseline), "--format", "junit")
+    yield Reader("baseline", baseline, lambda: _show(build, baseline), words)
+
+
+def _of_training(folder: Path, images: Path, labelled: tuple[str, ...], model: Path) -> Iterator[Reader]:
+    aside = str(folder / "aside.json")
+    palette = folder / "palette.json"
+    write_json(palette, {"forest": "#000000", "deforested": "#ffffff"})
+    words = ("train", *labelled, "--palette", str(palette), "-o", aside)
+    black = np.zeros((2, 2), np.uint8)
+    yield Reader("palette", palette, lambda: Palette.read(palette).paint(black), words)
+    edges = folder / "edges.json"
+    write_text(edges, '{"patterns": [1, 56, "000111000", ["100", "100", "100"]]}\n')
+    words = ("compile", str(model), "--target", "edge", "--edges", str(edges), "-o", str(folder / "aside"))
+    yield Reader("edge patterns", edges, lambda: from_file(edges).table(), words)
+    name = sorted(images.iterdir())[0]
+    regions = folder / "regions.csv"
+    rows = [f"{name.name},forest,0,0,20,20", f"{name.name},deforested,20,20,9,28"]
+    write_text(regions, "\n".join([",".join(REGION_COLUMNS), *rows]) + "\n")
+    words = ("train", "--regions", str(regions), "--chips", str(images), "-o", aside)
+    yield Reader("regions", regions, lambda: [*from_regions(regions, images, seed=0)], words)
+    tags = folder / "tags.csv"
+    write_text(tags, f"image_name,tags\n{name.stem},clear primary\nnone,haze road\n")
+    words = ("evaluate", str(model), "--chips", str(images), "--tags", str(tags))
+    yield Reader("tags", tags, lambda: read_tags(tags), words)
+
+
+def _of_flights(flight: Path) -> Iterator[Reader]:
+    for _ in write_flight(flight, make_flight(0, (640, 640), frames=3)):
+        pass
+    poses, camera, ground = flight / "poses.csv", flight / "camera.toml", flight / "map.tif"
+    frame = sorted((flight / "frames").iterdir())[0]
+    words = ("locate", "--map", str(ground), "--frames", str(flight / "frames"), "--poses", str(poses))
+    words = (*words, "--camera", str(camera), "-o", str(flight / "located"))
+    yield Reader("poses", poses, lambda: read_poses(poses), words)
+    yield Reader("camera", camera, lambda: _look(camera), words)
+    yield Reader("picture, JPEG", frame, lambda: read_rgb(frame), words)
+    yield Reader("map, GeoTIFF", ground, lambda: RasterReader(ground, Reading()).thinned(32, 32), words)
 
 
 def _show(build: Path, baseline: Path) -> None:
@@ -458,10 +314,6 @@ def _look(path: Path) -> None:
     camera.rays(np.array([0.0, camera.width - 1.0]), np.array([0.0, camera.height - 1.0]))
 
 
-def _read_raster(path: Path) -> None:
-    RasterReader(path, Reading()).thinned(32, 32)
-
-
 def _silent(step: str, done: int, total: int) -> None:
     """No progress is shown."""
 
@@ -478,13 +330,14 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         kinds = [reader for reader in readers(Path(name)) if (options.only or "") in reader.name]
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        print("| file | tried | read | refused by one line | faults |\n| --- | --: | --: | --: | --: |")
+        heads = ["file", "tried", "read", "refused by one line", "faults"]
+        print(head(heads, ["left", *["right"] * 4]))
         faults: list[str] = []
         for reader in kinds:
             tally = fuzz(reader, options.cases, options.seed)
             read, refused = tally.ends["read"], tally.ends["refused"]
             wrong = options.cases - read - refused
-            print(f"| {reader.name} | {options.cases} | {read} | {refused} | {wrong} |", flush=True)
+            print(row([reader.name, options.cases, read, refused, wrong]), flush=True)
             faults += [
                 f"{reader.name}, {tally.ends[end]}: {end}\n{text}" for end, text in tally.faults.items()
             ]

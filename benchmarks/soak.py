@@ -24,7 +24,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from benchmarks.fuzz import damaged
+from benchmarks.damage import damaged
 from wnn2hdl.build.folder import is_build
 from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.errors import Wnn2hdlError

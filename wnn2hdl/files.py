@@ -219,6 +219,29 @@ def beside(path: Path, suffix: str) -> Path:
     return path.with_name(f".{name}{suffix}")
 
 
+def read_text(path: Path, what: str) -> str:
+    """Read a file as UTF-8.
+
+    Args:
+        path: the file.
+        what: what it should hold, for the error: "a model".
+
+    Raises:
+        InputError: the file is missing, or no text.
+    """
+    require_file(path, what)
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read {what}", value=f"{path} ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"not {what}, or a damaged one",
+            value=f"{path} ({error})",
+            hint="give the file as it was saved",
+        ) from error
+
+
 def read_json_value(path: Path, what: str) -> Any:
     """Read what a JSON file holds.
 
@@ -231,15 +254,12 @@ def read_json_value(path: Path, what: str) -> Any:
             with: a number that is none or infinite, half a surrogate pair, a key twice.
     """
     try:
-        require_file(path, what)
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path, what)
         data = json.loads(text, parse_constant=_finite, parse_float=_finite, object_pairs_hook=_unique)
         if "\\ud" in text.lower():
             json.dumps(data, ensure_ascii=False).encode()
     except InputError as error:
         raise ModelFileError(error.fault, value=error.value, hint=error.hint) from error
-    except OSError as error:
-        raise ModelFileError(f"cannot read {what}", value=f"{path} ({error.strerror})") from error
     except (ValueError, RecursionError) as error:
         raise ModelFileError(
             f"not {what}, or a damaged one",

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.fuzz import Reader, damaged, ending, fuzz
+from benchmarks.damage import damaged
+from benchmarks.fuzz import Reader, ending, fuzz
 from wnn2hdl.errors import InputError
 
 
