@@ -224,7 +224,7 @@ def _of_features(folder: Path) -> Iterator[Reader]:
     counts = np.random.default_rng(0).integers(0, 3, (2, 3, 4))
     thresholds = Thermometer(((0.1, 0.5, 0.9), (2.0, 3.0)))
     WisardModel(thresholds, ("a", "b"), np.array([[[0, 1], [2, 3], [4, 0]]]), counts, 1).save(file)
-    words = ("compile", str(file), "-o", str(folder / "aside"))
+    words: tuple[str, ...] = ("compile", str(file), "-o", str(folder / "aside"))
     yield Reader("model of features", file, lambda: load_model(file), words)
     table = folder / "table.csv"
     write_text(table, "height,width,label\n1.5,2,a\n0.25,3e1,b\n-1,0,a\n")
@@ -289,7 +289,15 @@ def _of_flights(flight: Path) -> Iterator[Reader]:
         pass
     poses, camera, ground = flight / "poses.csv", flight / "camera.toml", flight / "map.tif"
     frame = sorted((flight / "frames").iterdir())[0]
-    words = ("locate", "--map", str(ground), "--frames", str(flight / "frames"), "--poses", str(poses))
+    words: tuple[str, ...] = (
+        "locate",
+        "--map",
+        str(ground),
+        "--frames",
+        str(flight / "frames"),
+        "--poses",
+        str(poses),
+    )
     words = (*words, "--camera", str(camera), "-o", str(flight / "located"))
     yield Reader("poses", poses, lambda: read_poses(poses), words)
     yield Reader("camera", camera, lambda: _look(camera), words)
@@ -331,7 +339,7 @@ def main() -> None:
         kinds = [reader for reader in readers(Path(name)) if (options.only or "") in reader.name]
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         heads = ["file", "tried", "read", "refused by one line", "faults"]
-        print(head(heads, ["left", *["right"] * 4]))
+        print(head(heads))
         faults: list[str] = []
         for reader in kinds:
             tally = fuzz(reader, options.cases, options.seed)
