@@ -33,6 +33,7 @@ WNN2HDL = (sys.executable, "-c", "import sys; from wnn2hdl.cli import main; sys.
 COMMANDS: Mapping[str, Sequence[str]] = {
     "samples": ("samples", "--images", "8", "-o", PLACE),
     "train": ("train", "-o", f"{PLACE}/model.json"),
+    "compile": ("compile", "{given}/model.json", "--target", "pixel", "-o", f"{PLACE}/build"),
     "sweep": ("sweep", "--n", "2..3", "--k", "2..5", "--trials", "4", "-o", PLACE),
     "scan": ("scan", "{given}/model.json", "{given}/scene/images", "--square", "5", "-o", PLACE),
     "locate": ("locate", "-o", PLACE),

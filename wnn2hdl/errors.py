@@ -3,6 +3,9 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+_LONGEST_VALUE = 1000
+"""Characters of a value at fault that are shown."""
+
 
 class Wnn2hdlError(Exception):
     """The root of every error this project raises on purpose.
@@ -21,10 +24,22 @@ class Wnn2hdlError(Exception):
         super().__init__(self.line())
 
     def line(self) -> str:
-        """The one line a user sees: ``fault: value; hint``."""
-        text = self.fault if self.value is None else f"{self.fault}: {self.value}"
+        """The one line a user sees: ``fault: value; hint``.
+
+        What comes from a file may be of any length, and hold what a terminal takes for a command.
+        """
+        text = self.fault if self.value is None else f"{self.fault}: {_shortened(str(self.value))}"
         text = f"{text}; {self.hint}" if self.hint else text
-        return " ".join(text.split())
+        return printable(_shortened(" ".join(text.split()), 2 * _LONGEST_VALUE))
+
+
+def printable(text: str) -> str:
+    """A text whose control characters, and marks that turn the direction of text, are escaped."""
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
+
+
+def _shortened(text: str, longest: int = _LONGEST_VALUE) -> str:
+    return text if len(text) <= longest else f"{text[: longest - 100]} … {text[-97:]}"
 
 
 class InputError(Wnn2hdlError):

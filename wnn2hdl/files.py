@@ -1,10 +1,13 @@
 """Reading and writing the project's JSON: whole files or nothing."""
 
+import errno
+import hashlib
 import json
 import math
 import os
 import secrets
 import stat
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -22,6 +25,12 @@ PARTIAL = ".part"
 
 _NAME = 50
 """Letters of a file's name that its hidden name has."""
+
+_LONGEST_NAME = 200
+"""Bytes of a name to which something can be added; a file system's names end at 255."""
+
+_LONGEST_REASON = 200
+"""Characters of the reason why a file is not taken."""
 
 
 def write_text(path: Path, text: str) -> None:
@@ -64,7 +73,15 @@ def _encoded(text: str, path: Path) -> bytes:
 
 @contextmanager
 def _replacing(path: Path) -> Iterator[BinaryIO]:
-    """A new file that takes the place of another when all went well."""
+    """A new file that takes the place of another when all went well.
+
+    What a link leads to is replaced, and the link stays. A device or a pipe cannot be replaced: as root it
+    could, and would be gone for everybody.
+    """
+    path = Path(os.path.realpath(path))
+    with suppress(FileNotFoundError):
+        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
+            raise OSError(errno.EINVAL, "it is a device or a pipe")
     # Not by `tempfile`, whose files are for their owner's eyes only, whatever the umask says. A file system's
     # names end at 255 bytes, and a name that fits is to fit with what is added, too.
     temporary = path.with_name(f".{path.name[:_NAME]}.{secrets.token_hex(4)}{PARTIAL}")
@@ -142,24 +159,12 @@ def output_folder(path: Path, what: str) -> Iterator[None]:
     """
     new = not path.exists()
     make_folder(path)
-    lock = FileLock(path / LOCK_FILE, timeout=0)
     try:
-        with lock:
+        with _locked(path / LOCK_FILE, path, f"into the folder of this {what}"):
             for left in (*path.glob(f".*{PARTIAL}"), *path.glob(f"*/.*{PARTIAL}")):
                 if left.parent == path or not (left.parent / LOCK_FILE).exists():
                     left.unlink(missing_ok=True)
-            try:
-                yield
-            finally:
-                # Before the lock is given back, or another process might hold the file that goes.
-                with suppress(OSError):
-                    (path / LOCK_FILE).unlink()
-    except Timeout as error:
-        raise InputError(
-            f"another process is writing into the folder of this {what}",
-            value=path,
-            hint="wait until it ends, or choose another folder",
-        ) from error
+            yield
     except BaseException:
         if new:
             with suppress(OSError):
@@ -167,30 +172,106 @@ def output_folder(path: Path, what: str) -> Iterator[None]:
         raise
 
 
-def read_json(path: Path, what: str) -> dict[str, Any]:
-    """Read a JSON object.
+@contextmanager
+def held(path: Path, what: str) -> Iterator[None]:
+    """As `output_folder`, for one file or folder that is made among others; its own folder has to exist.
+
+    Args:
+        path: what is made; it need not exist.
+        what: what it is, for the error: "build".
+
+    Raises:
+        InputError: another process makes it, or its folder cannot be written.
+    """
+    with _locked(beside(path, LOCK_FILE), path, f"this {what}"):
+        yield
+
+
+@contextmanager
+def _locked(place: Path, path: Path, what: str) -> Iterator[None]:
+    """A lock, held at ``place``, for whoever writes ``path``; ``what`` it is for the error."""
+    try:
+        # A place that cannot be written would look like one that another process holds.
+        place.touch()
+    except OSError as error:
+        raise _unwritable(path, error) from error
+    try:
+        with FileLock(place, timeout=0):
+            try:
+                yield
+            finally:
+                # Before the lock is given back, or another process might hold the file that goes.
+                with suppress(OSError):
+                    place.unlink()
+    except Timeout as error:
+        raise InputError(
+            f"another process is writing {what}",
+            value=path,
+            hint="wait until it ends, or choose another place",
+        ) from error
+
+
+def beside(path: Path, suffix: str) -> Path:
+    """A hidden name in the same folder, always the same for a path."""
+    name = path.name
+    if len(os.fsencode(name)) > _LONGEST_NAME:
+        name = hashlib.sha256(os.fsencode(name)).hexdigest()
+    return path.with_name(f".{name}{suffix}")
+
+
+def read_text(path: Path, what: str) -> str:
+    """Read a file as UTF-8.
 
     Args:
         path: the file.
         what: what it should hold, for the error: "a model".
 
     Raises:
-        ModelFileError: the file is missing, no text, no JSON, or no object; or it holds what no JSON file
-            can be written with: a number that is none or infinite, half a surrogate pair.
+        InputError: the file is missing, or no text.
+    """
+    require_file(path, what)
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read {what}", value=f"{path} ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"not {what}, or a damaged one",
+            value=f"{path} ({error})",
+            hint="give the file as it was saved",
+        ) from error
+
+
+def read_json_value(path: Path, what: str) -> Any:
+    """Read what a JSON file holds.
+
+    Args:
+        path: the file.
+        what: what it should hold, for the error: "a model".
+
+    Raises:
+        ModelFileError: the file is missing, no text or no JSON; or it holds what no JSON file can be written
+            with: a number that is none or infinite, half a surrogate pair, a key twice.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-        data = json.loads(text, parse_constant=_finite, parse_float=_finite)
+        text = read_text(path, what)
+        data = json.loads(text, parse_constant=_finite, parse_float=_finite, object_pairs_hook=_unique)
         if "\\ud" in text.lower():
             json.dumps(data, ensure_ascii=False).encode()
-    except OSError as error:
-        raise ModelFileError(f"cannot read {what}", value=f"{path} ({error.strerror})") from error
+    except InputError as error:
+        raise ModelFileError(error.fault, value=error.value, hint=error.hint) from error
     except (ValueError, RecursionError) as error:
         raise ModelFileError(
             f"not {what}, or a damaged one",
-            value=f"{path} ({error})",
+            value=f"{path} ({str(error)[:_LONGEST_REASON]})",
             hint="give the JSON file as it was saved",
         ) from error
+    return data
+
+
+def read_json(path: Path, what: str) -> dict[str, Any]:
+    """As `read_json_value`, and what the file holds is an object."""
+    data = read_json_value(path, what)
     if not isinstance(data, dict):
         raise ModelFileError(f"not {what}", value=f"{path} (holds a JSON {type(data).__name__})")
     return data
@@ -199,6 +280,15 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
 def write_json(path: Path, data: dict[str, Any]) -> None:
     """Write a JSON object, indented, in the order given; the same data give the same bytes."""
     write_text(path, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    # Python keeps the last of several values; whoever wrote the others meant something by them.
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        twice = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
+        raise ValueError(f"the key {twice[:50]!r} stands in one object twice")
+    return data
 
 
 def _finite(text: str) -> float:

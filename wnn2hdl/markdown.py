@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
+from wnn2hdl.errors import printable
+
 MISSING = "n/a"
 """What a cell shows where there is no value."""
 
@@ -39,7 +41,7 @@ def row(cells: Sequence[Any]) -> str:
 
 def escaped(text: object) -> str:
     """Any text, such as a file's name, on one line and with all its characters standing for themselves."""
-    return _MARKUP.sub(r"\\\g<0>", " ".join(str(text).split()))
+    return _MARKUP.sub(r"\\\g<0>", printable(" ".join(str(text).split())))
 
 
 def _cell(value: Any) -> str:

@@ -37,3 +37,12 @@ def test_a_tool_error_keeps_what_was_run_and_what_it_printed() -> None:
     error = ToolError("failed", value="yosys", command="yosys -p x", output="syntax error")
     assert (error.command, error.output) == ("yosys -p x", "syntax error")
     assert str(error) == "failed: yosys"
+
+
+def test_a_line_is_short_and_holds_nothing_that_a_terminal_obeys() -> None:
+    value = "\x1b[31m\u202e" + "x" * 5000 + "the end"
+    line = InputError("wrong", value=value, hint="correct it").line()
+    assert line.startswith(r"wrong: \x1b[31m\u202ex")
+    assert line.endswith("the end; correct it")
+    assert line.isprintable()
+    assert len(line) < 2000

@@ -199,3 +199,51 @@ def test_a_new_folder_goes_again_if_nothing_came_of_it(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="bad input"):
         fail(tmp_path / "new", "finished")
     assert (tmp_path / "new" / "finished").exists()
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "model.json"
+    path.write_text('{"a": {"rams": 1, "rams": 2}}')
+    with pytest.raises(ModelFileError, match="the key 'rams' stands in one object twice"):
+        files.read_json(path, "a model")
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "model.json")
+    with pytest.raises(ModelFileError, match=r"cannot read a model: .*it is a pipe"):
+        files.read_json(tmp_path / "model.json", "a model")
+
+
+def test_the_file_that_a_link_leads_to_is_replaced(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "folder" / "file")
+    files.write_text(tmp_path / "link", "text")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "folder" / "file").read_text() == "text"
+
+
+def test_a_device_is_not_replaced(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path in (Path("/dev/null"), tmp_path / "pipe"):
+        with pytest.raises(InputError, match=r"cannot write: .* \(it is a device or a pipe\)"):
+            files.write_text(path, "text")
+    assert Path("/dev/null").is_char_device()
+    assert (tmp_path / "pipe").is_fifo()
+
+
+def test_what_is_made_has_one_maker(tmp_path: Path) -> None:
+    place = tmp_path / "model.json"
+    with files.held(place, "model"), files.held(tmp_path / "other.json", "model"):
+        second = files.held(place, "model")
+        with pytest.raises(InputError, match=r"another process is writing this model: .*model.json; wait"):
+            second.__enter__()
+    with files.held(place, "model"):
+        pass
+    assert not [*tmp_path.iterdir()]
+
+
+def test_the_longest_names_are_held_too(tmp_path: Path) -> None:
+    with files.held(tmp_path / ("x" * 255), "model"):
+        pass
+    with pytest.raises(InputError, match="cannot write"), files.held(tmp_path / "none" / "x", "model"):
+        pass

@@ -10,6 +10,7 @@ from wnn2hdl.build import remembered
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.emission import SOBEL, Files
 from wnn2hdl.build.simulating import simulate_apart, simulate_parts
+from wnn2hdl.files import read_text
 from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
@@ -57,10 +58,11 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         afresh: simulate also what is remembered to have passed before.
 
     Raises:
+        InputError: an emitted file is missing or no text any more.
         ToolError: an outside program is missing or failed.
     """
     simulations = _Simulations(design, files, afresh=afresh)
-    verilog = files.verilog.read_text(encoding="utf-8")
+    verilog = read_text(files.verilog, "Verilog")
     emitted = {part: Circuit((verilog,), design.module(part)) for part in design.parts}
     jobs: dict[str, Callable[[], Any]] = {
         **simulations.jobs,
@@ -117,9 +119,9 @@ def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[s
 
 def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
     """What is counted: each circuit of a design, and the Sobel baseline."""
-    text = files.verilog.read_text(encoding="utf-8")
+    text = read_text(files.verilog, "Verilog")
     jobs = {part: Job(text, design.module(part)) for part in design.parts}
-    jobs[SOBEL] = Job(files.sobel.read_text(encoding="utf-8"), design.module(SOBEL), baseline=True)
+    jobs[SOBEL] = Job(read_text(files.sobel, "Verilog"), design.module(SOBEL), baseline=True)
     return jobs
 
 

@@ -11,7 +11,7 @@ from wnn2hdl.build.folder import failure
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.classifiers import PictureClassifier, PixelTable, familiar_colours, model_classifier
-from wnn2hdl.ir import WisardModel, bits_to_codes, picture_encoder
+from wnn2hdl.ir import WisardModel, all_codes, bits_to_codes, picture_encoder
 from wnn2hdl.lower.deforestation import DECISION
 
 
@@ -47,4 +47,4 @@ def circuit_classifier(design: Design) -> PixelTable:
 def circuit_answers(design: Design) -> NDArray[np.int64]:
     """Class index for every code as the circuit computes it, cared for or not: int64 ``[2**width]``."""
     decision = next(table for table in design.circuit.tables().values() if table.name == DECISION)
-    return bits_to_codes(decision.function.evaluate(np.arange(1 << len(decision.function.inputs))))
+    return bits_to_codes(decision.function.evaluate(all_codes(len(decision.function.inputs))))

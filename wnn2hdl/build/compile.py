@@ -11,7 +11,7 @@ from wnn2hdl.build.checking import Checked, check
 from wnn2hdl.build.classifier import circuit_classifier
 from wnn2hdl.build.design import Design, require_picture_model
 from wnn2hdl.build.emission import emit, generators
-from wnn2hdl.build.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, staged
+from wnn2hdl.build.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, resolved, staged
 from wnn2hdl.build.planning import CompileOptions, Plan, plan
 from wnn2hdl.build.reporting import command, evaluation, sample_picture, write_page
 from wnn2hdl.dataset import Dataset, from_masks
@@ -90,7 +90,7 @@ def compile_model(
     test_set = _test_set(options)
     if test_set is not None:
         require_same_classes(require_picture_model(model).classes, test_set)
-    name = require_name(options.name) if options.name else name_from(folder.resolve().name)
+    name = require_name(options.name) if options.name else name_from(resolved(folder).name)
     clock = _Clock()
     with staged(folder) as staging:
         with clock.stage("plan"):

@@ -202,6 +202,10 @@ class Design:
         for name, table in self.circuit.tables().items():
             if not isinstance(table.function, LutNetwork):
                 raise ValueError(f"{name} is not mapped to LUTs")
+        if not self.target.fits(self.model):
+            raise ValueError(f"the model cannot be the target {self.target.name}")
+        if self.target.classifies and not care_sets(self.circuit).keys() & {"neighbourhood", "pixel"}:
+            raise ValueError(f"the {self.target.name} holds no classifier")
         for name, care in care_sets(self.circuit).items():
             if self.mode == "exact" and care.kind not in ("everything", "implied"):
                 raise ValueError(f"{name} has don't-cares in exact mode")

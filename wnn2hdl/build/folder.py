@@ -1,14 +1,13 @@
 """Build folders: written beside their place, then renamed into it, so that a reader sees all or nothing."""
 
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.errors import InputError
-from wnn2hdl.files import make_folder
+from wnn2hdl.files import beside, held, make_folder
 
 REPORT_FILE = "report.json"
 REPORT_PAGE = "report.md"
@@ -29,29 +28,47 @@ def staged(target: Path) -> Iterator[Path]:
         target: the folder to make; an earlier build there is replaced.
 
     Yields:
-        the folder to write into, beside ``target``; it is removed if the block fails or is interrupted.
+        the folder to write into, beside ``target``; it is removed if the block fails or is interrupted. The
+            next build at the same place removes what a killed one left.
 
     Raises:
-        InputError: ``target`` is something other than a build or an empty folder, or cannot be written.
+        InputError: ``target`` is something other than a build or an empty folder, cannot be written, or
+            another process makes it.
     """
+    # The folder that a link leads to is replaced, and the link stays.
+    target = resolved(target)
     require_replaceable(target)
     make_folder(target.parent)
+    with held(target, "build"):
+        staging, earlier = beside(target, ".new"), beside(target, ".earlier")
+        _tidy(target, staging, earlier)
+        make_folder(staging)
+        try:
+            yield staging
+            require_replaceable(target)
+            if target.exists():
+                target.rename(earlier)
+            staging.rename(target)
+        finally:
+            _tidy(target, staging, earlier)
+
+
+def _tidy(target: Path, staging: Path, earlier: Path) -> None:
+    """Remove what is not needed any more, also what a killed process left; an earlier build is put back."""
+    if earlier.exists() and not target.exists():
+        earlier.rename(target)
+    for folder in (staging, earlier):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def resolved(target: Path) -> Path:
+    """The folder that a path leads to, there or not; raises InputError if a link leads to itself."""
     try:
-        staging = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
-    except OSError as error:
+        return target.resolve()
+    except (OSError, RuntimeError) as error:
         raise InputError(
-            "cannot write into the folder",
-            value=f"{target.parent} ({error.strerror})",
-            hint="choose another output folder",
+            "the output is a link that leads nowhere", value=target, hint="choose another folder"
         ) from error
-    try:
-        staging.chmod(0o755)
-        yield staging
-        if target.exists():
-            shutil.rmtree(target)
-        staging.rename(target)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
 
 
 def require_replaceable(target: Path) -> None:

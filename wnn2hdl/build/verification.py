@@ -9,7 +9,7 @@ from wnn2hdl.build.emission import Files
 from wnn2hdl.build.folder import REPORT_FILE, failure, require_build
 from wnn2hdl.build.statements import false_statements, foreign_circuit, foreign_files, foreign_text
 from wnn2hdl.emit import check as check_manifest
-from wnn2hdl.errors import CheckError, ModelFileError, ToolError
+from wnn2hdl.errors import CheckError, InputError, ModelFileError, ToolError
 from wnn2hdl.files import read_json
 from wnn2hdl.progress import Progress
 from wnn2hdl.report import check_report
@@ -45,6 +45,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         InputError: the folder is no build.
         ToolError: an outside program is missing or failed.
     """
+    require_build(folder)
     progress("reading the files", 0, 1)
     problems, build = inspect_build(folder)
     progress("reading the files", 1, 1)
@@ -53,7 +54,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
     design, files, report = build
     try:
         checked = check(design, files, progress, afresh=True)
-    except (ToolError, CheckError) as error:
+    except (InputError, ToolError, CheckError) as error:
         if not problems and isinstance(error, ToolError):
             raise
         # A changed file may well be one that no tool can read.

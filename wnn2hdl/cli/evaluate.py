@@ -284,7 +284,7 @@ def _lines(heading: str, figures: dict[str, Any]) -> str:
     table = Table("class", "precision", "recall", "F1", "IoU")
     for label, scores in figures["per_class"].items():
         table.add_row(label, *(_figure(score) for score in scores.values()))
-    console = Console(width=100)
+    console = Console(width=100, markup=False, emoji=False)
     with console.capture() as captured:
         console.print(table)
     lines.append(captured.get().rstrip())

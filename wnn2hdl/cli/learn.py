@@ -24,7 +24,7 @@ from wnn2hdl.cli.pictures import mask_options, reading_options
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.files import make_folder
+from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.model import COMMAND
@@ -146,7 +146,7 @@ def train_command(
     # Before the training, so that a place that cannot be written is told at once.
     make_folder(output.parent)
     points: tuple[Point, ...] = ()
-    with progress() as report:
+    with held(output, "model"), progress() as report:
         if pareto:
             options.require_none("--pareto")
             if neighbourhood is not None:
@@ -164,12 +164,12 @@ def train_command(
         else:
             model = options.train(dataset, seed, report)
         model = with_colours(model, dataset, report)
-    command = spoken_command({"output", "as_json"})
-    model = replace(model, training={**model.training, COMMAND: command})
-    model.save(output)
-    summary = _summary(model, output, len(dataset))
-    if pareto:
-        summary["front"] = _save_front(points, output, model.colours)
+        command = spoken_command({"output", "as_json"})
+        model = replace(model, training={**model.training, COMMAND: command})
+        model.save(output)
+        summary = _summary(model, output, len(dataset))
+        if pareto:
+            summary["front"] = _save_front(points, output, model.colours)
     emit(summary, _sentence(summary), as_json=as_json)
 
 

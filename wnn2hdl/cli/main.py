@@ -1,15 +1,18 @@
 """The `wnn2hdl` command: turns errors into one line and an exit status."""
 
+import os
 import platform
 import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 
 import click
 
 import wnn2hdl
 from wnn2hdl.cli.commands import LazyGroup
 from wnn2hdl.cli.terminal import accept_any_text, say
-from wnn2hdl.errors import Wnn2hdlError
+from wnn2hdl.errors import Wnn2hdlError, printable
 
 INTERRUPTED = 128 + signal.SIGINT
 
@@ -57,19 +60,23 @@ def main() -> int:
     """Run the command line.
 
     Returns:
-        0 done; 1 a check or gate failed; 2 bad usage, bad input or a missing tool; 130 interrupted.
+        0 done; 1 a check or gate failed; 2 bad usage, bad input or a missing tool; 130 interrupted, 143
+        terminated.
     """
     accept_any_text()
     if platform.system() == "Windows":
         return _complain("Windows is not supported; run wnn2hdl on Linux or macOS, or in WSL", 2)
     try:
-        status = app(standalone_mode=False)
+        with _stopped_by(signal.SIGTERM, signal.SIGHUP):
+            status = app(standalone_mode=False)
     except Wnn2hdlError as error:
         return _complain(error.line(), error.exit_status)
     except click.ClickException as error:
         return _complain(error.format_message(), error.exit_code)
     except (KeyboardInterrupt, click.Abort):
         return _complain("interrupted; nothing half-written was left", INTERRUPTED)
+    except _Stopped as stopped:
+        return _complain(f"stopped by {stopped.signal.name}; nothing half-written was left", stopped.status)
     except BrokenPipeError:
         # The reader of our output went away, as `| head` does; closing stops Python's own complaint at exit.
         sys.stderr.close()
@@ -80,6 +87,39 @@ def main() -> int:
     return status if isinstance(status, int) else 0
 
 
+class _Stopped(BaseException):
+    """Someone asked the process to end."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.signal = signal.Signals(number)
+        self.status = 128 + number
+
+
+@contextmanager
+def _stopped_by(*signals: signal.Signals) -> Iterator[None]:
+    """Let the first of these signals end the block by an exception, so that it clears up."""
+
+    def stop(number: int, _: object) -> None:
+        for each in signals:
+            signal.signal(each, signal.SIG_IGN)
+        raise _Stopped(number)
+
+    before = {each: signal.signal(each, stop) for each in signals}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+
+
 def _complain(line: str, status: int) -> int:
-    say(f"wnn2hdl: {' '.join(line.split())}", error=True)
+    # A full disk may be why there is something to complain of, and hold what was printed so far.
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    with suppress(OSError):
+        say(f"wnn2hdl: {printable(' '.join(line.split()))}", error=True)
     return status

@@ -77,7 +77,7 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
     for part, figures in report["parts"].items():
         if figures["luts"] is not None:
             table.add_row(part, *("n/a" if figures[key] is None else str(figures[key]) for key in columns))
-    console = Console(width=100)
+    console = Console(width=100, markup=False, emoji=False)
     with console.capture() as captured:
         console.print(table)
     proof = report["proof"]

@@ -10,7 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
+from wnn2hdl.files import read_json_value
 from wnn2hdl.ir import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, codes_to_bits
+
+_LONGEST_SHOWN = 60
+"""Characters of a wrong pattern that are shown."""
 
 NEIGHBOURS = (1, 3, 5, 7)
 """The centre's 4-neighbours: above, left, right, below."""
@@ -51,12 +55,7 @@ def from_file(path: Path) -> EdgeFilter:
     Raises:
         InputError: the file cannot be read, is no such list, is empty, or a pattern is none of these.
     """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError("cannot read the edge patterns", value=f"{path} ({error.strerror})") from error
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
-        raise InputError("the file of edge patterns is no JSON", value=f"{path} ({error})") from error
+    data = read_json_value(path, "a file of edge patterns")
     listed = data.get("patterns") if isinstance(data, dict) else data
     if not isinstance(listed, list) or not listed:
         raise InputError(
@@ -76,7 +75,7 @@ def _code(entry: Any, where: str) -> int:
     if len(text) != WINDOW_BITS or not set(text) <= {"0", "1"}:
         raise InputError(
             f"{where} is no 3x3 pattern",
-            value=json.dumps(entry),
+            value=json.dumps(entry)[:_LONGEST_SHOWN],
             hint=f"write a code from 0 to {WINDOW_CODES - 1}, nine 0s and 1s, or three rows of three",
         )
     return sum(1 << bit for bit, character in enumerate(text) if character == "1")

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import COLOURS, PictureEncoder, WisardModel, codes_to_bits, picture_encoder
+from wnn2hdl.ir import COLOURS, PictureEncoder, WisardModel, all_codes, codes_to_bits, picture_encoder
 
 
 class PictureClassifier(Protocol):
@@ -76,7 +76,7 @@ class PixelTable:
 
 
 def model_classifier(model: WisardModel) -> PixelTable:
-    """The classifier that a model is; raises InputError if it reads no pixels."""
+    """The classifier that a model is; raises InputError as `picture_encoder`."""
     encoder = picture_encoder(model)
     answers = model.evaluate_all_codes().astype(np.uint8)
     return PixelTable(model.classes, encoder, answers, familiar_codes(model), familiar_colours(model))
@@ -96,5 +96,5 @@ def familiar_codes(model: WisardModel) -> NDArray[np.bool_]:
     in every class was never seen; one that has them all may be new all the same, put together from parts of
     others.
     """
-    bits = codes_to_bits(np.arange(1 << model.encoder.width), model.encoder.width)
+    bits = codes_to_bits(all_codes(model.encoder.width), model.encoder.width)
     return np.asarray((model.responses(bits, threshold=1) == model.rams).any(axis=1))

@@ -1,6 +1,6 @@
 """The contract between stages: encoders, models, tables, covers, LUT networks, windows and their files."""
 
-from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits
 from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
 from wnn2hdl.ir.encoder import (
     CHANNELS,
@@ -63,6 +63,7 @@ __all__ = [
     "TruthTable",
     "WisardModel",
     "Words",
+    "all_codes",
     "bits_to_codes",
     "codes_to_bits",
     "equation",

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, codes_to_bits
+from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, codes_to_bits
 from wnn2hdl.ir.wires import Bits
 
 
@@ -34,7 +34,7 @@ class Everything:
         Args:
             positions: the bits, at most `MAX_TABLE_INPUTS`; the first is the least significant of the code.
         """
-        return np.ones(1 << len(positions), dtype=np.bool_)
+        return np.ones(len(all_codes(len(positions))), dtype=np.bool_)
 
     def to_json(self) -> dict[str, Any]:
         """A JSON object, read back by `care_from_json`."""
@@ -145,7 +145,7 @@ class Implied:
 
     def project(self, positions: tuple[int, ...]) -> NDArray[np.bool_]:
         """See `Everything.project`."""
-        flags = codes_to_bits(np.arange(1 << len(positions)), len(positions))
+        flags = codes_to_bits(all_codes(len(positions)), len(positions))
         place = {position: i for i, position in enumerate(positions)}
         allowed = np.ones(len(flags), dtype=np.bool_)
         for group in self.falling:
@@ -195,6 +195,6 @@ def care_from_json(data: dict[str, Any]) -> CareSet:
 
 
 def _occurring(rows: Bits, positions: tuple[int, ...]) -> NDArray[np.bool_]:
-    flags = np.zeros(1 << len(positions), dtype=np.bool_)
+    flags = np.zeros(len(all_codes(len(positions))), dtype=np.bool_)
     flags[rows[:, list(positions)] @ (1 << np.arange(len(positions), dtype=np.int64))] = True
     return flags

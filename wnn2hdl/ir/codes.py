@@ -7,8 +7,25 @@ stage uses this order, and so does the Verilog: ``code[i]`` is input ``i``.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wnn2hdl.errors import InputError
+
 MAX_TABLE_INPUTS = 20
 """The widest truth table that is built: 2**20 rows."""
+
+
+def all_codes(width: int) -> NDArray[np.int64]:
+    """Every code of ``width`` bits, ascending: int64 ``[2**width]``.
+
+    Raises:
+        InputError: there are more than a truth table may have rows.
+    """
+    if width > MAX_TABLE_INPUTS:
+        raise InputError(
+            "too many input bits for one truth table",
+            value=f"{width} bits",
+            hint=f"choose at most {MAX_TABLE_INPUTS}",
+        )
+    return np.arange(1 << width)
 
 
 def codes_to_bits(codes: ArrayLike, width: int) -> NDArray[np.bool_]:
@@ -22,7 +39,11 @@ def codes_to_bits(codes: ArrayLike, width: int) -> NDArray[np.bool_]:
         bool array of shape ``S + (width,)``; element ``i`` of the last axis is bit ``i``.
     """
     values = np.asarray(codes, dtype=np.int64)
-    return (values[..., np.newaxis] >> np.arange(width) & 1).astype(np.bool_)
+    bits = np.empty((*values.shape, width), dtype=np.bool_)
+    # Bit by bit, since all bits at once would take eight times as much memory as the result.
+    for position in range(width):
+        bits[..., position] = values >> position & 1
+    return bits
 
 
 def bits_to_codes(bits: ArrayLike) -> NDArray[np.int64]:

@@ -10,9 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import write_json
-from wnn2hdl.ir.codes import bits_to_codes, codes_to_bits
+from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits
 from wnn2hdl.ir.encoder import BitSelect, Encoder, PictureEncoder, encoder_from_json
 from wnn2hdl.ir.modelfile import answers_digest, contradicting, header, read_model_file
+
+MAX_COUNTS = 1 << 27
+"""The most counts of a model, all discriminators together: 1 GiB."""
+
+MAX_PICTURE_CLASSES = 256
+"""The most classes of a model of pictures, whose answers are bytes."""
 
 COMMAND = "command"
 """Key in `WisardModel.training` of the command line that trained the model, all but its ``-o``."""
@@ -107,8 +113,12 @@ class WisardModel:
         return np.asarray(self.responses(bits).argmax(axis=1))
 
     def evaluate_all_codes(self) -> NDArray[np.int64]:
-        """The class of every code, int64 ``[2**encoder.width]``; a pixel model is this table."""
-        return self.evaluate(codes_to_bits(np.arange(1 << self.encoder.width), self.encoder.width))
+        """The class of every code, int64 ``[2**encoder.width]``; a pixel model is this table.
+
+        Raises:
+            InputError: the codes have more than `MAX_TABLE_INPUTS` bits.
+        """
+        return self.evaluate(codes_to_bits(all_codes(self.encoder.width), self.encoder.width))
 
     def digest(self) -> str:
         """SHA-256 of all that decides the model's answers (not of `training` and `colours`), hexadecimal."""
@@ -159,6 +169,8 @@ class WisardModel:
             raise ValueError(f"the mapping has shape {mapping.shape}; rams and address_bits say {shape}")
         if len(data["counts"]) != len(data["classes"]) or any(len(d) != shape[0] for d in data["counts"]):
             raise ValueError("counts must hold a list a class with an entry a RAM")
+        # A RAM takes a few bytes in the file, however many addresses it has.
+        check_size(len(data["classes"]), *shape)
         counts = np.stack([[_dense(ram, shape[1]) for ram in rams] for rams in data["counts"]])
         return cls(
             encoder=encoder_from_json(data["encoder"]),
@@ -171,11 +183,20 @@ class WisardModel:
         )
 
 
+def check_size(classes: int, rams: int, address_bits: int) -> None:
+    """Raise ValueError if discriminators have more addresses than `MAX_COUNTS` all together."""
+    if not 1 <= address_bits <= MAX_TABLE_INPUTS or classes * rams << address_bits > MAX_COUNTS:
+        raise ValueError(
+            f"{classes} discriminators of {rams} RAMs with {address_bits} address bits take more than "
+            f"{MAX_COUNTS} counts"
+        )
+
+
 def pixel_encoder(model: WisardModel) -> BitSelect:
     """The encoder of a model of single pixels.
 
     Raises:
-        InputError: the model reads features, or looks at a pixel's neighbours.
+        InputError: as `picture_encoder`, or the model looks at a pixel's neighbours.
     """
     encoder = picture_encoder(model)
     if not isinstance(encoder, BitSelect):
@@ -188,16 +209,23 @@ def pixel_encoder(model: WisardModel) -> BitSelect:
 
 
 def picture_encoder(model: WisardModel) -> PictureEncoder:
-    """The encoder of a model of pixels or of neighbourhoods.
+    """The encoder of a model of pixels or of neighbourhoods, which can be a table of all codes.
 
     Raises:
-        InputError: the model reads features, not the bits of pixels.
+        InputError: the model reads features, not the bits of pixels; or too many bits for a table, or it has
+            more than `MAX_PICTURE_CLASSES`.
     """
     if not isinstance(model.encoder, PictureEncoder):
         raise InputError(
             "the model does not read pixels",
             value=f"its encoder is of kind {model.encoder.kind}",
             hint="use one that was trained on images",
+        )
+    if model.encoder.width > MAX_TABLE_INPUTS or len(model.classes) > MAX_PICTURE_CLASSES:
+        raise InputError(
+            "the model is too large for a table",
+            value=f"{model.encoder.width} bits, {len(model.classes)} classes",
+            hint=f"choose at most {MAX_TABLE_INPUTS} bits and {MAX_PICTURE_CLASSES} classes",
         )
     return model.encoder
 

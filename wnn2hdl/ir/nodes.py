@@ -15,6 +15,12 @@ from wnn2hdl.ir.network import LutNetwork
 from wnn2hdl.ir.tables import TruthTable
 from wnn2hdl.ir.wires import Bits, Word, width_of
 
+MAX_NUMBER = 63
+"""The most bits of a word that is read as a number."""
+
+MAX_CYCLES = 1 << 16
+"""The longest delay."""
+
 Function = TruthTable | LutNetwork
 """What a `Table` computes: as it was extracted, or mapped to LUTs."""
 
@@ -62,12 +68,16 @@ class Table:
 
 @dataclass(frozen=True)
 class Threshold:
-    """One bit: whether an unsigned word is at least a constant."""
+    """One bit: whether an unsigned word of at most `MAX_NUMBER` bits is at least a constant."""
 
     kind: ClassVar[str] = "threshold"
     name: str
     word: Word
     at_least: int
+
+    def __post_init__(self) -> None:
+        if width_of(self.word) > MAX_NUMBER:
+            raise ValueError(f"{self.name} compares words of more than {MAX_NUMBER} bits")
 
     @property
     def constant(self) -> bool | None:
@@ -92,7 +102,7 @@ class Threshold:
         return 0
 
     def evaluate(self, values: tuple[Bits, ...]) -> dict[str, Bits]:
-        """See `Table.evaluate`; words have at most 63 bits."""
+        """See `Table.evaluate`."""
         return {self.name: (bits_to_codes(values[0]) >= self.at_least)[:, np.newaxis]}
 
 
@@ -116,7 +126,8 @@ class Sum:
     def __post_init__(self) -> None:
         if not self.weights:
             object.__setattr__(self, "weights", (1,) * width_of(self.word))
-        if not self.word or len(self.weights) != width_of(self.word) or min(self.weights) < 1:
+        fits = self.word and len(self.weights) == width_of(self.word) and min(self.weights) >= 1
+        if not fits or (sum(self.weights) + self.offset).bit_length() > MAX_NUMBER:
             raise ValueError(f"{self.name} adds {width_of(self.word)} bits with the weights {self.weights}")
         if self.offset < 0:
             raise ValueError(f"{self.name} adds the constant {self.offset}")
@@ -182,7 +193,7 @@ class ArgMax:
 
     Attributes:
         name: of the node and of the net it drives: the index in binary.
-        words: at least two, each of at most 63 bits.
+        words: at least two, each of at most `MAX_NUMBER` bits.
         tie: which of equal words wins: the ``first`` or the ``last``.
     """
 
@@ -194,6 +205,8 @@ class ArgMax:
     def __post_init__(self) -> None:
         if len(self.words) < 2 or self.tie not in ("first", "last"):
             raise ValueError(f"{self.name} cannot choose among {len(self.words)} words, ties: {self.tie}")
+        if max(map(width_of, self.words)) > MAX_NUMBER:
+            raise ValueError(f"{self.name} compares words of more than {MAX_NUMBER} bits")
 
     @property
     def reads(self) -> tuple[Word, ...]:
@@ -227,7 +240,7 @@ class Register:
     Attributes:
         name: of the node and of the net it drives.
         word: what is delayed.
-        cycles: by how many clock cycles, at least 1.
+        cycles: by how many clock cycles, 1 to `MAX_CYCLES`.
     """
 
     kind: ClassVar[str] = "register"
@@ -236,8 +249,8 @@ class Register:
     cycles: int = 1
 
     def __post_init__(self) -> None:
-        if self.cycles < 1:
-            raise ValueError(f"{self.name} delays by {self.cycles} cycles; the fewest are 1")
+        if not 1 <= self.cycles <= MAX_CYCLES:
+            raise ValueError(f"{self.name} delays by {self.cycles} cycles; it may be 1 to {MAX_CYCLES}")
 
     @property
     def reads(self) -> tuple[Word, ...]:

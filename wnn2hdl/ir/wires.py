@@ -13,6 +13,9 @@ from wnn2hdl.ir.verilog_text import check_identifier
 Bits = NDArray[np.bool_]
 """Values of a port or a word: bool ``[samples, width]``; element 0 of a row is the least significant."""
 
+MAX_WORD = 1 << 20
+"""The most bits of a port or a word."""
+
 _SLICE = re.compile(r"([A-Za-z]\w*(?:\.\w+)?)\[(\d+):(\d+)\]", re.ASCII)
 
 
@@ -28,8 +31,8 @@ class Port:
 
     def __post_init__(self) -> None:
         check_identifier(self.name)
-        if self.width < 1:
-            raise ValueError(f"port {self.name} has {self.width} bits; the fewest are 1")
+        if not 1 <= self.width <= MAX_WORD:
+            raise ValueError(f"port {self.name} has {self.width} bits; it may have 1 to {MAX_WORD}")
         if self.name == "clk":
             raise ValueError("a port cannot be called clk, as the clock is")
 
@@ -87,4 +90,7 @@ def word_to_json(word: Word) -> list[str]:
 
 def word_from_json(data: Any) -> Word:
     """The inverse of `word_to_json`; raises ValueError or TypeError on anything else."""
-    return tuple(Slice.parse(text) for text in data)
+    word = tuple(Slice.parse(text) for text in data)
+    if width_of(word) > MAX_WORD:
+        raise ValueError(f"a word has {width_of(word)} bits; it may have {MAX_WORD}")
+    return word

@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
-    MAX_TABLE_INPUTS,
     WINDOW_CODES,
     PictureEncoder,
     TruthTable,
     WisardModel,
+    all_codes,
     codes_to_bits,
     window_codes,
 )
@@ -31,7 +31,6 @@ def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> Tr
     Raises:
         InputError: the model reads more bits than a table may have.
     """
-    _check_width(model.encoder.width)
     outputs = (len(model.classes) - 1).bit_length()
     names = tuple(f"class_bit{position}" for position in range(outputs))
     values = codes_to_bits(model.evaluate_all_codes(), outputs)
@@ -49,8 +48,7 @@ def code_histogram(encoder: PictureEncoder, images: Iterable[NDArray[np.uint8]])
     Raises:
         InputError: the encoder has more bits than a table may have.
     """
-    _check_width(encoder.width)
-    total = np.zeros(1 << encoder.width, dtype=np.int64)
+    total = np.zeros(len(all_codes(encoder.width)), dtype=np.int64)
     for image in images:
         total += np.bincount(encoder.codes(image).ravel(), minlength=len(total))
     return total
@@ -88,12 +86,3 @@ def care_set(histogram: NDArray[np.int64], minimum: int) -> NDArray[np.bool_]:
             hint="ask for fewer or give more imagery",
         )
     return care
-
-
-def _check_width(width: int) -> None:
-    if width > MAX_TABLE_INPUTS:
-        raise InputError(
-            "too many input bits for one truth table",
-            value=f"{width} bits",
-            hint=f"choose at most {MAX_TABLE_INPUTS}",
-        )

@@ -4,7 +4,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import WINDOW_BITS, BitSelect, EdgeFilter, Neighbourhood, Thermometer, WisardModel, Words
+from wnn2hdl.ir import (
+    WINDOW_BITS,
+    BitSelect,
+    EdgeFilter,
+    Neighbourhood,
+    Thermometer,
+    WisardModel,
+    Words,
+    picture_encoder,
+)
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.models import AnyModel
@@ -81,6 +90,7 @@ def _network(of: Ingredients) -> Circuit:
 
 def _wisard(of: Ingredients) -> WisardModel:
     assert isinstance(of.model, WisardModel)
+    picture_encoder(of.model)  # refuses a model that is too large for a table
     return of.model
 
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from wnn2hdl.errors import printable
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -207,6 +209,7 @@ _NAME, _NARROW_NAME = 56, 20
 
 
 def _short(text: str, width: int = _NAME) -> str:
+    text = printable(text)
     return text if len(text) <= width else text[: width - 1].rstrip() + "…"
 
 
@@ -256,7 +259,7 @@ def _themed(figure: "Figure", title: str, prefix: str, *, narrow: bool) -> Marku
     prefix += "-narrow" * narrow
     text = re.sub(r' id="([^"]+)"', rf' id="{prefix}-\1"', text)
     text = re.sub(r'(xlink:href="#|url\(#)', rf"\1{prefix}-", text)
-    head = f'<svg class="chart{" narrow" * narrow}" role="img" aria-label="{escape(title)}"'
+    head = f'<svg class="chart{" narrow" * narrow}" role="img" aria-label="{escape(printable(title))}"'
     box = re.search(r'viewBox="[^"]+"', text)
     assert box is not None
     head = f'{head} {box[0]} xmlns:xlink="http://www.w3.org/1999/xlink">'

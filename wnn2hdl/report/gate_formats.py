@@ -1,10 +1,10 @@
 """What the gate found, for people in a merge request and for the readers of build servers."""
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree as ET
 
+from wnn2hdl.errors import printable
 from wnn2hdl.markdown import MISSING, Align, escaped, table
 from wnn2hdl.report.baseline import Recorded, recorded
 from wnn2hdl.report.gate import Check
@@ -12,9 +12,6 @@ from wnn2hdl.report.page import form
 
 VERSION = 1
 """Of the form of `gate_json`; it rises when a key changes its meaning or goes away."""
-
-_FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML 1.0 cannot hold, not even escaped."""
 
 
 def gate_json(reports: Mapping[str, Mapping[str, Any]], checks: Sequence[Check]) -> dict[str, Any]:
@@ -85,20 +82,21 @@ def gate_markdown(
 def gate_junit(checks: Sequence[Check]) -> str:
     """JUnit XML: a suite for each build, a case for each check, and for a failed one the reason, twice.
 
-    All characters are ASCII, others being references, so that it is right in whatever encoding it is printed.
+    Control characters, of which XML cannot hold all, are escaped as Python does it. All characters are ASCII,
+    others being references, so that it is right in whatever encoding it is printed.
     GitLab names a case by its ``classname`` and ``name``, shows the text of ``failure`` and not its
     ``message`` (docs.gitlab.com/ci/testing/unit_test_reports); readers for GitHub show the ``message``.
     """
     root = ET.Element("testsuites", _counts(checks) | {"name": "wnn2hdl"})
     for build in dict.fromkeys(check.build for check in checks):
         own = [check for check in checks if check.build == build]
-        suite = ET.SubElement(root, "testsuite", _counts(own) | {"name": _printable(build)})
+        suite = ET.SubElement(root, "testsuite", _counts(own) | {"name": printable(build)})
         for check in own:
             names = {"classname": f"wnn2hdl.{build}", "name": f"{build}: {check.name}"}
-            attributes = {key: _printable(value) for key, value in names.items()}
+            attributes = {key: printable(value) for key, value in names.items()}
             case = ET.SubElement(suite, "testcase", attributes | {"time": "0"})
             if not check.passed:
-                text = _printable(f"{build}: {check.name}: {check.text}")
+                text = printable(f"{build}: {check.name}: {check.text}")
                 ET.SubElement(case, "failure", message=text, type="gate").text = text
     ET.indent(root, " ")
     body = ET.tostring(root, encoding="us-ascii", xml_declaration=False).decode()
@@ -108,10 +106,6 @@ def gate_junit(checks: Sequence[Check]) -> str:
 def _counts(checks: Sequence[Check]) -> dict[str, str]:
     failures = sum(not check.passed for check in checks)
     return {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "time": "0"}
-
-
-def _printable(text: str) -> str:
-    return _FORBIDDEN.sub("?", text)
 
 
 def _list(title: str, checks: Sequence[Check]) -> list[str]:

@@ -127,7 +127,8 @@ def _figure(report: Mapping[str, Any], head: str) -> tuple[str, Any, str]:
     key = place.format(target=report["target"])
     value: Any = report
     for step in key.split("."):
-        value = (value or {}).get(step)
+        # A build of another target has no such part.
+        value = value.get(step) if isinstance(value, Mapping) else None
     return key, value, kind
 
 

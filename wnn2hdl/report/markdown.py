@@ -39,7 +39,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
     """
     sections = [
         f"# {escaped(report['name'])}",
-        f"Target {report['target']}, mode {report['mode']}, proof: {_proof(report['proof'])}.",
+        f"Target {report['target']}, mode {report['mode']}, proof: {escaped(_proof(report['proof']))}.",
         "## Resources, measured",
         _resources(report["parts"]),
         f"Counted after `{report['count']}`." if report["count"] else "",
@@ -85,7 +85,7 @@ def _proof(proof: Mapping[str, Any]) -> str:
 
 def _answers(report: Mapping[str, Any]) -> str:
     edges = report["edges"]
-    answers: list[tuple[str, str]] = []
+    answers: list[tuple[str, str | None]] = []
     target = TARGETS.get(report["target"])
     if target is None or target.classifies:
         care = report["care"]

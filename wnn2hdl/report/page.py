@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from wnn2hdl.errors import printable
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.lower.targets import TARGETS
@@ -82,12 +83,20 @@ class _Cell:
 
 
 def environment(*packages: str) -> "Environment":
-    """The templates of this package, and of others that extend them; every value is escaped."""
+    """The templates of this package, and of others that extend them.
+
+    Every value is escaped, and none holds control characters.
+    """
     # Not at the top: commands that write no page need not wait for it.
     from jinja2 import ChoiceLoader, Environment, PackageLoader
 
     loader = ChoiceLoader([PackageLoader(name) for name in ("wnn2hdl.report", *packages)])
-    return Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    return Environment(loader=loader, autoescape=True, finalize=_inert, trim_blocks=True, lstrip_blocks=True)
+
+
+def _inert(value: Any) -> Any:
+    """A value of a page: of a name with line breaks the lines stay, so that a quoted name can be copied."""
+    return "\n".join(map(printable, value.split("\n"))) if type(value) is str else value
 
 
 def build_page(

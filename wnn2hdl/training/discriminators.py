@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect, WisardModel
+from wnn2hdl.ir import COLOURS, BitSelect, WisardModel, all_codes
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
@@ -23,13 +23,7 @@ def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -
     Raises:
         InputError: the encoder is too wide for a table, an image cannot be read, or a class has no pixel.
     """
-    if encoder.width > MAX_TABLE_INPUTS:
-        raise InputError(
-            "too many input bits for one truth table",
-            value=encoder.width,
-            hint=f"choose at most {MAX_TABLE_INPUTS}",
-        )
-    shape = (len(dataset.classes), 1 << encoder.width)
+    shape = (len(dataset.classes), len(all_codes(encoder.width)))
     histograms = np.zeros((len(dataset), *shape), dtype=np.int64)
     for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
         histograms[position] = _histogram(image, encoder, shape)

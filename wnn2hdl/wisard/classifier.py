@@ -8,7 +8,8 @@ from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from wnn2hdl.ir import MAX_TABLE_INPUTS, Encoder, WisardModel, bits_to_codes, codes_to_bits
+from wnn2hdl.ir import MAX_TABLE_INPUTS, Encoder, WisardModel, all_codes, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.model import check_size
 from wnn2hdl.wisard import rams as ram_work
 from wnn2hdl.wisard.bleaching import choose_bleaching_for_samples
 from wnn2hdl.wisard.mapping import draw_mapping
@@ -84,7 +85,7 @@ class WisardClassifier(ClassifierMixin, BaseEstimator):
         bits = _binary(validate_data(self, X, reset=False))
         width = bits.shape[1]
         if width <= MAX_TABLE_INPUTS and len(bits) > 1 << width:
-            every_code = codes_to_bits(np.arange(1 << width), width)
+            every_code = codes_to_bits(all_codes(width), width)
             return self._responses(every_code)[bits_to_codes(bits)]
         return self._responses(bits)
 
@@ -139,6 +140,7 @@ class WisardClassifier(ClassifierMixin, BaseEstimator):
                     f"there is one class only, {self.classes_.tolist()}; at least two are needed"
                 )
             self.mapping_ = self._mapping(bits.shape[1])
+            check_size(len(self.classes_), *self.mapping_.shape[1:])
             size = 1 << self.mapping_.shape[2]
             self.counts_ = np.zeros((len(self.classes_), self.mapping_.shape[1], size), dtype=np.int64)
         if unknown := set(np.unique(labels).tolist()) - set(self.classes_.tolist()):

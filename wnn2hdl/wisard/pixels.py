@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import MAX_TABLE_INPUTS, BitSelect, Encoder, WisardModel, codes_to_bits
+from wnn2hdl.ir import Encoder, WisardModel, codes_to_bits, pixel_encoder
+from wnn2hdl.ir.model import check_size
 from wnn2hdl.wisard.rams import addresses, count
 
 
@@ -33,8 +34,14 @@ def train_histogram(
         training: what to note in the model's `WisardModel.training`.
 
     Raises:
-        InputError: a class has no pixels.
+        InputError: a class has no pixels, or the discriminators are larger than a model may have them.
     """
+    try:
+        check_size(len(classes), *mapping.shape[1:])
+    except ValueError as error:
+        raise InputError(
+            "too large a model", value=error, hint="choose fewer RAMs or address bits"
+        ) from error
     for name, pixels in zip(classes, histogram, strict=True):
         if not pixels.any():
             raise InputError(
@@ -53,29 +60,17 @@ class PixelClassifier:
     """A pixel model as the table of all its answers.
 
     Args:
-        model: one whose encoder is a `BitSelect` of at most `MAX_TABLE_INPUTS` bits, of at most 256 classes.
+        model: one of single pixels.
 
     Attributes:
         table: uint8 ``[2**width]``, the winning class of each code.
 
     Raises:
-        InputError: the model reads no pixels, or too many bits or classes for a table.
+        InputError: as `pixel_encoder`.
     """
 
     def __init__(self, model: WisardModel) -> None:
-        encoder = model.encoder
-        if not isinstance(encoder, BitSelect):
-            raise InputError(
-                "the model does not read pixels",
-                value=f"its encoder is of kind {encoder.kind}",
-                hint="use a pixel model",
-            )
-        if encoder.width > MAX_TABLE_INPUTS or len(model.classes) > 256:
-            raise InputError(
-                "the model is too large for a table",
-                value=f"{encoder.width} bits, {len(model.classes)} classes",
-                hint=f"choose at most {MAX_TABLE_INPUTS} bits and 256 classes",
-            )
+        encoder = pixel_encoder(model)
         self.table = model.evaluate_all_codes().astype(np.uint8)
         self._encoder = encoder
 

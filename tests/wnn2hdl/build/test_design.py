@@ -54,6 +54,10 @@ def unknown(data: dict[str, Any]) -> None:
     data["circuit"][-1]["name"] = "sobel"
 
 
+def aimed(data: dict[str, Any]) -> None:
+    data["target"] = "neighbourhood"
+
+
 def exact(data: dict[str, Any]) -> None:
     data["mode"] = "exact"
 
@@ -76,6 +80,7 @@ def foreign(data: dict[str, Any]) -> None:
         (lost, "the design is damaged"),
         (beyond, "the design is damaged"),
         (twisted, "the design is damaged"),
+        (aimed, "the model cannot be the target neighbourhood"),
         (unknown, "nothing is known about the circuit sobel"),
         (exact, "pixel has don't-cares in exact mode"),
         (commented, "is no line of a comment"),

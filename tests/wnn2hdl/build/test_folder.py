@@ -1,5 +1,6 @@
 """Build folders appear whole or not at all."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -65,3 +66,66 @@ def test_the_reason_of_a_failure_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "FAILED").unlink()
     (tmp_path / "FAILED").mkdir()
     assert failure(tmp_path) == "FAILED cannot be read (Is a directory)"
+
+
+def test_a_folder_has_the_mode_that_the_user_asks_for(tmp_path: Path) -> None:
+    before = os.umask(0o027)
+    try:
+        with staged(tmp_path / "build"):
+            pass
+    finally:
+        os.umask(before)
+    assert (tmp_path / "build").stat().st_mode & 0o777 == 0o750
+
+
+def test_one_process_makes_a_build(tmp_path: Path) -> None:
+    with staged(tmp_path / "build"):
+        second = staged(tmp_path / "build")
+        with pytest.raises(InputError, match="another process is writing this build"):
+            second.__enter__()
+        with staged(tmp_path / "build.2"):
+            pass
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["build", "build.2"]
+
+
+@pytest.mark.parametrize("moment", ["new", "earlier"])
+def test_the_next_build_tidies_up_behind_a_killed_one(tmp_path: Path, moment: str) -> None:
+    with staged(tmp_path / "build") as staging:
+        (staging / MANIFEST_NAME).write_text("first")
+    # Killed while it was writing, or between the two renames at the end.
+    (tmp_path / ".build.new").mkdir()
+    (tmp_path / ".build.new" / "half").touch()
+    if moment == "earlier":
+        (tmp_path / "build").rename(tmp_path / ".build.earlier")
+
+    def fail() -> None:
+        with staged(tmp_path / "build"):
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        fail()
+    assert [path.name for path in tmp_path.iterdir()] == ["build"]
+    assert (tmp_path / "build" / MANIFEST_NAME).read_text() == "first"
+
+
+def test_what_someone_puts_there_meanwhile_stays(tmp_path: Path) -> None:
+    def make() -> None:
+        with staged(tmp_path / "build"):
+            (tmp_path / "build").mkdir()
+            (tmp_path / "build" / "photo.png").touch()
+
+    with pytest.raises(InputError, match="no earlier build"):
+        make()
+    assert (tmp_path / "build" / "photo.png").exists()
+
+
+def test_links_are_followed_and_those_that_lead_nowhere_refused(tmp_path: Path) -> None:
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "disk" / "build")
+    with staged(tmp_path / "link") as staging:
+        (staging / MANIFEST_NAME).touch()
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "disk" / "build" / MANIFEST_NAME).exists()
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    with pytest.raises(InputError, match="a link that leads nowhere"), staged(tmp_path / "loop"):
+        pass

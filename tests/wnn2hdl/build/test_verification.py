@@ -98,3 +98,11 @@ def test_the_reason_of_a_failure_is_told(copy: Path) -> None:
 def test_another_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="not a build folder"):
         verify_build(tmp_path, silent)
+
+
+def test_an_emitted_file_that_is_no_text_is_a_finding(copy: Path) -> None:
+    (copy / "sobel.v").write_bytes(b"module \xff\xfe")
+    problems, checked = verify_build(copy, silent)
+    assert checked is None
+    assert problems[0] == "sobel.v was changed"
+    assert problems[-1].startswith("not Verilog, or a damaged one")

@@ -85,7 +85,7 @@ def test_a_wrong_pattern_is_counted_and_shown(tmp_path: Path, entry: object, sho
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[1, 2", "is no JSON"),
+        ("[1, 2", "not a file of edge patterns, or a damaged one"),
         ("[]", "holds no list of edge patterns"),
         ("7", "holds no list of edge patterns"),
         ('{"codes": [1]}', "holds no list of edge patterns"),
@@ -99,5 +99,5 @@ def test_a_file_that_is_no_list_is_refused(tmp_path: Path, text: str, message: s
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"cannot read the edge patterns: .*gone\.json \(No such file"):
+    with pytest.raises(InputError, match=r"cannot read a file of edge patterns: .*gone\.json \(No such file"):
         from_file(tmp_path / "gone.json")

@@ -1,8 +1,10 @@
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import bits_to_codes, codes_to_bits
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import all_codes, bits_to_codes, codes_to_bits
 
 
 def test_bit_i_of_a_code_is_element_i() -> None:
@@ -22,3 +24,10 @@ def test_shapes_are_kept() -> None:
     codes = np.arange(6).reshape(2, 3)
     assert codes_to_bits(codes, 5).shape == (2, 3, 5)
     assert np.array_equal(bits_to_codes(codes_to_bits(codes, 5)), codes)
+
+
+def test_more_codes_than_a_table_has_rows_are_refused_before_they_are_made() -> None:
+    assert all_codes(2).tolist() == [0, 1, 2, 3]
+    for width in (21, 52, 10**9):
+        with pytest.raises(InputError, match=f"too many input bits for one truth table: {width} bits"):
+            all_codes(width)

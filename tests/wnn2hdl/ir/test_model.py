@@ -9,8 +9,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import ModelFileError
-from wnn2hdl.ir import PIXEL_BIT_NAMES, BitSelect, Neighbourhood, Tap, WisardModel, codes_to_bits
+from wnn2hdl.errors import InputError, ModelFileError
+from wnn2hdl.ir import (
+    PIXEL_BIT_NAMES,
+    BitSelect,
+    Neighbourhood,
+    Tap,
+    Thermometer,
+    WisardModel,
+    codes_to_bits,
+    picture_encoder,
+)
 from wnn2hdl.ir.modelfile import VERSION
 
 
@@ -248,7 +257,7 @@ def test_other_files_get_one_line(tmp_path: Path, content: bytes) -> None:
 def test_a_missing_file_or_a_folder_gets_one_line(tmp_path: Path) -> None:
     with pytest.raises(ModelFileError, match=r"cannot read a model: .*No such file"):
         WisardModel.load(tmp_path / "m.json")
-    with pytest.raises(ModelFileError, match=r"cannot read a model: .*[Dd]irectory"):
+    with pytest.raises(ModelFileError, match=r"cannot read a model: .*it is a folder"):
         WisardModel.load(tmp_path)
 
 
@@ -282,3 +291,35 @@ def test_a_damaged_tap_is_told(tmp_path: Path, key: str, value: Any, message: st
     path.write_text(json.dumps(data))
     with pytest.raises(ModelFileError, match=message):
         WisardModel.load(path)
+
+
+def test_counts_are_not_allocated_before_they_are_found_too_many(tmp_path: Path) -> None:
+    data = hand_worked().to_json()
+    # 2,000 RAMs of 2**20 counts in less than a megabyte: 32 GB.
+    rams: list[dict[str, list[int]]] = [{"addresses": [], "counts": []}] * 1000
+    taps = [[[0] * 20] * 1000]
+    data |= {"address_bits": 20, "rams": 1000, "mapping": taps, "counts": [rams, rams]}
+    path = tmp_path / "model.json"
+    path.write_text(json.dumps(data))
+    with pytest.raises(ModelFileError, match=r"2 discriminators of 1000 RAMs with 20 address bits take more"):
+        WisardModel.load(path)
+
+
+@pytest.mark.parametrize("width", [14, 32, 52, 200])
+def test_a_model_of_features_is_no_table_of_pixels(width: int, tmp_path: Path) -> None:
+    encoder = Thermometer((tuple(float(level) for level in range(width)),))
+    replace(hand_worked(), encoder=encoder).save(tmp_path / "model.json")
+    model = WisardModel.load(tmp_path / "model.json")
+    with pytest.raises(InputError, match="the model does not read pixels"):
+        picture_encoder(model)
+    if width > 20:
+        with pytest.raises(InputError, match=f"too many input bits for one truth table: {width} bits"):
+            model.evaluate_all_codes()
+
+
+def test_classes_of_pictures_fit_a_byte() -> None:
+    model = hand_worked()
+    classes = tuple(map(str, range(300)))
+    many = replace(model, classes=classes, counts=np.ones((300, 2, 4), dtype=np.int64))
+    with pytest.raises(InputError, match="too large for a table: 4 bits, 300 classes"):
+        picture_encoder(many)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from wnn2hdl.ir import Lut, LutNetwork, TruthTable, bits_to_codes, codes_to_bits
-from wnn2hdl.ir.nodes import ArgMax, Leaf, Match, Register, Sum, Table, Threshold
-from wnn2hdl.ir.wires import Slice
+from wnn2hdl.ir.nodes import MAX_CYCLES, ArgMax, Leaf, Match, Register, Sum, Table, Threshold
+from wnn2hdl.ir.wires import Slice, width_of
 
 A, B, C = (Slice("a", 0, 3),), (Slice("b", 0, 3),), (Slice("c", 0, 2),)
+WIDE = (Slice("wide", 0, 64),)
 CODES = np.arange(8)
 WORDS = codes_to_bits(CODES, 3)
 
@@ -77,7 +78,11 @@ def test_a_register_keeps_values_and_takes_cycles() -> None:
         (lambda: Match("m", A, C), "m compares 3 with 2 bits"),
         (lambda: ArgMax("w", (A,)), "w cannot choose among 1 words"),
         (lambda: ArgMax("w", (A, B), "any"), "ties: any"),  # type: ignore[arg-type]
-        (lambda: Register("r", A, 0), "r delays by 0 cycles; the fewest are 1"),
+        (lambda: Register("r", A, 0), "r delays by 0 cycles; it may be 1 to 65536"),
+        (lambda: Register("r", A, MAX_CYCLES + 1), "r delays by 65537 cycles"),
+        (lambda: Threshold("t", WIDE, 1), "t compares words of more than 63 bits"),
+        (lambda: ArgMax("m", (WIDE, WIDE)), "m compares words of more than 63 bits"),
+        (lambda: Sum("s", A, (1 << 63,) * width_of(A)), "s adds"),
     ],
 )
 def test_what_makes_no_sense_is_refused(make: Any, message: str) -> None:

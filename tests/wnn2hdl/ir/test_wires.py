@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir.wires import Port, Slice, read_word, width_of, word_from_json, word_to_json
+from wnn2hdl.ir.wires import MAX_WORD, Port, Slice, read_word, width_of, word_from_json, word_to_json
 
 NETS = st.from_regex(r"[A-Za-z][A-Za-z0-9_]{0,8}(\.[a-z0-9_]{1,8})?", fullmatch=True)
 SLICES = st.builds(Slice, NETS, st.integers(0, 300), st.integers(1, 300))
@@ -42,8 +42,10 @@ def test_the_word_of_a_port_is_all_of_it() -> None:
 
 
 def test_a_port_has_bits() -> None:
-    with pytest.raises(ValueError, match="port rgb has 0 bits; the fewest are 1"):
+    with pytest.raises(ValueError, match="port rgb has 0 bits; it may have 1 to 1048576"):
         Port("rgb", 0)
+    with pytest.raises(ValueError, match="port rgb has 1048577 bits"):
+        Port("rgb", MAX_WORD + 1)
 
 
 @pytest.mark.parametrize(

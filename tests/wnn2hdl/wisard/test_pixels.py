@@ -88,7 +88,9 @@ def test_codes_wider_than_16_bits() -> None:
 def test_models_that_no_table_of_pixels_holds() -> None:
     counts = np.ones((2, 1, 2), dtype=np.int64)
     features = WisardModel(Thermometer(((1.0,),)), ("a", "b"), np.array([[[0]]]), counts, 1)
-    with pytest.raises(InputError, match=r"the model does not read pixels: .*thermometer; use a pixel model"):
+    with pytest.raises(
+        InputError, match=r"the model does not read pixels: .*thermometer; use one that was trained"
+    ):
         PixelClassifier(features)
     with pytest.raises(InputError, match="too large for a table: 21 bits, 2 classes; choose at most 20"):
         PixelClassifier(replace(features, encoder=high_bits(7)))

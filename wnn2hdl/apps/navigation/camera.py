@@ -164,7 +164,7 @@ class Camera:
             table = tomllib.loads(path.read_text(encoding="utf-8")).get("camera")
         except OSError as error:
             raise InputError("cannot read the camera", value=f"{path} ({error.strerror})") from error
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        except (ValueError, RecursionError) as error:
             raise InputError("the camera is no TOML", value=f"{path} ({error})", hint=_FORM) from error
         if not isinstance(table, dict):
             raise InputError("no camera in the file", value=path, hint=_FORM)
