@@ -15,9 +15,8 @@ Word = list[str]
 def winner_network(widths: tuple[int, ...], *, tie: Literal["first", "last"]) -> LutNetwork:
     """Neighbours are compared and the larger one is passed on.
 
-    Two bits of both words are compared in one LUT, with the answer for the bits below. The largest bits of the
-    larger word do not depend on which one wins where they are equal, so that they can share a LUT with the
-    comparison.
+    Two bits of both words are compared in one LUT, with the answer for the bits below. The highest bits of
+    the larger word do not depend on the bits below, so that they can share a LUT with the comparison.
 
     Args:
         widths: bits of each of at least two unsigned words.
