@@ -3,8 +3,10 @@
 All thresholds of a feature are made together, see `wnn2hdl.lower.thresholds`.
 """
 
+import numpy as np
+
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import Thermometer
+from wnn2hdl.ir import Thermometer, TruthTable
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.encoder import Encoder
 from wnn2hdl.ir.features import FixedPoint, Words
@@ -55,11 +57,24 @@ def _thermometer(encoder: Thermometer, read: tuple[int, ...], nodes: list[Table]
         wanted.setdefault(feature, []).append(level - form.lowest)
     made: dict[tuple[int, int], Slice] = {}
     for feature, levels in wanted.items():
-        distinct = sorted(set(levels))
+        distinct = sorted(level for level in set(levels) if 0 < level < 1 << form.bits)
         word = [Slice("features", feature * form.bits + bit) for bit in range(form.bits)]
-        tables, bits = compare(word, distinct, signed=form.signed, name=f"x{feature}")
+        tables, bits = (
+            compare(word, distinct, signed=form.signed, name=f"x{feature}") if distinct else ([], [])
+        )
         nodes += tables
         made |= {(feature, level): bit for level, bit in zip(distinct, bits, strict=True)}
+        for level in set(levels) - set(distinct):
+            # All words are at least that, or none is.
+            values = np.full((2, 1), level <= 0)
+            nodes.append(
+                Table(
+                    f"x{feature}_{'all' if level <= 0 else 'none'}",
+                    (word[0],),
+                    TruthTable.exact(("i0",), ("o",), values),
+                )
+            )
+            made[feature, level] = Slice(nodes[-1].name)
     return [made[place] for place in places]
 
 

@@ -31,7 +31,7 @@ def compare(
 
     Args:
         word: the bits, the least significant first.
-        levels: the constants, from 1 to ``2**len(word) - 1``, ascending, no two of them equal.
+        levels: the constants, at least one, from 1 to ``2**len(word) - 1``, ascending, no two of them equal.
         signed: whether the word is a number in two's complement; it is then compared with its sign bit
             inverted, so that ``levels`` count from the lowest number.
         name: what the names of the tables begin with.

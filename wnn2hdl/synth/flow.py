@@ -38,8 +38,8 @@ _MAP_ALL = f"{OPTIONS} -run prepare:check\n"
 
 # Modules that keep their hierarchy are dissolved once they are mapped: `sta` looks into one module only.
 # synth_xilinx takes the timing arcs of CARRY4 and of flip-flops away, and `sta` then reports a path that ends
-# before the carry chain (measured, Yosys 0.70), so the mapped module joins a fresh copy of the cells. A LUT6_2
-# has no timing arcs; it stands for two tables.
+# before the carry chain (measured, Yosys 0.70), so the mapped module joins a fresh copy of the cells. There
+# are no timing arcs for a LUT6_2, which is two tables.
 _SCRIPT = """\
 read_verilog -lib -specify +/xilinx/cells_sim.v
 design -save cells
