@@ -8,16 +8,16 @@ from typing import Any
 from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib.wiring import In, Out
 
-from hdl_templates.compressor import Columns, add_columns
+from hdl_templates.adder import sum_network
 from hdl_templates.hierarchy import Part, place
 from hdl_templates.lookup import draw_network, unread_inputs
 from hdl_templates.matcher import draw_match
 from hdl_templates.ports import named, tie_off
-from hdl_templates.winner import draw_winner
+from hdl_templates.winner import winner_network
 from wnn2hdl.ir import LutNetwork, Style
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
-from wnn2hdl.ir.wires import Slice, Word
+from wnn2hdl.ir.wires import Slice, Word, width_of
 
 
 def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
@@ -63,9 +63,11 @@ class CircuitComponent(Part):
     def elaborate(self, platform: object) -> Module:
         """Draws the nodes one after the other."""
         m = Module()
-        scope = _Scope(
-            m, self, platform, {port.name: getattr(self, port.name) for port in self.circuit.inputs}
-        )
+        nets: dict[str, Value | list[Value]] = {
+            port.name: getattr(self, port.name) for port in self.circuit.inputs
+        }
+        tables = sum(isinstance(node, Table) for node in self.circuit.nodes)
+        scope = _Scope(m, self, platform, nets, tables == 1)
         for node in self.circuit.nodes:
             _HARDWARE[type(node)](scope, node)
         m.d.comb += [getattr(self, port).eq(scope.read(word)) for port, word in self.circuit.drivers.items()]
@@ -81,18 +83,30 @@ class _Scope:
         m: the module.
         part: the component that it belongs to.
         platform: what it is elaborated for.
-        nets: the value of each net that is driven so far.
+        nets: the value of each net that is driven so far, or those of its bits.
+        has_one_table: whether the circuit has one table; its cells then go by short names.
     """
 
     m: Module
     part: CircuitComponent
     platform: object
-    nets: dict[str, Value]
+    nets: dict[str, Value | list[Value]]
+    has_one_table: bool
 
     def read(self, word: Word) -> Value:
         """The value of a word."""
-        parts = [self.nets[part.net][part.low : part.low + part.width] for part in word]
+        parts = [
+            net[part.low : part.low + part.width] if isinstance(net, Value) else Cat(*self.bits((part,)))
+            for part in word
+            for net in [self.nets[part.net]]
+        ]
         return parts[0] if len(parts) == 1 else Cat(*parts)
+
+    def bits(self, word: Word) -> list[Value]:
+        """The values of a word's bits; a slice of a `Cat` would take time with all that the `Cat` holds."""
+        return [
+            self.nets[part.net][place] for part in word for place in range(part.low, part.low + part.width)
+        ]
 
     def unread_bits(self) -> list[Value]:
         """Bits of nets that no node and no output reads."""
@@ -124,22 +138,20 @@ def _table(scope: _Scope, node: Table) -> None:
     network = node.function
     if not isinstance(network, LutNetwork):
         raise ValueError(f"{node.name} is not mapped to LUTs")
-    circuit = scope.part.circuit
-    ports = {port.name: port for port in circuit.inputs}
-    alone = sum(isinstance(other, Table) for other in circuit.nodes) == 1
-    prefix = "" if alone else f"{node.name}_"
-    bits = list(scope.read(node.word))
+    prefix = "" if scope.has_one_table else f"{node.name}_"
+    bits = scope.bits(node.word)
     # Chosen bits of a port go by the names that the model has for them; a whole port has a name already.
-    if not any(node.word == port.word for port in circuit.inputs):
+    ports = scope.part.circuit.inputs
+    if scope.has_one_table and not any(node.word == port.word for port in ports):
         places = [part.net for part in node.word for _ in range(part.width)]
         unread = set(unread_inputs(network))
         for position, (name, net) in enumerate(zip(network.inputs, places, strict=True)):
-            if net in ports and position not in unread:
-                bits[position] = named(scope.m, f"{prefix}{name}", bits[position], scope.platform)
+            if position not in unread and any(net == port.name for port in ports):
+                bits[position] = named(scope.m, name, bits[position], scope.platform)
     outputs = draw_network(
         scope.m, network, bits, style=scope.part.style, prefix=prefix, platform=scope.platform
     )
-    scope.nets[node.name] = Cat(*outputs)
+    scope.nets[node.name] = outputs
 
 
 def _threshold(scope: _Scope, node: Threshold) -> None:
@@ -149,16 +161,7 @@ def _threshold(scope: _Scope, node: Threshold) -> None:
 
 
 def _sum(scope: _Scope, node: Sum) -> None:
-    columns: Columns = {}
-    for bit, weight in zip(scope.read(node.word), node.weights, strict=True):
-        for power in range(weight.bit_length()):
-            if weight >> power & 1:
-                columns.setdefault(power, []).append(bit)
-    for power in range(node.offset.bit_length()):
-        if node.offset >> power & 1:
-            columns.setdefault(power, []).append(Const(1, 1))
-    total = add_columns(scope.m, columns, node.drives[node.name], name=node.name, platform=scope.platform)
-    scope.nets[node.name] = Cat(*total)
+    _draw(scope, node.name, sum_network(node.weights, node.offset), scope.bits(node.word))
 
 
 def _match(scope: _Scope, node: Match) -> None:
@@ -167,8 +170,15 @@ def _match(scope: _Scope, node: Match) -> None:
 
 
 def _argmax(scope: _Scope, node: ArgMax) -> None:
-    words = [scope.read(word) for word in node.words]
-    scope.nets[node.name] = draw_winner(scope.m, words, tie=node.tie, name=node.name)
+    network = winner_network(tuple(map(width_of, node.words)), tie=node.tie)
+    _draw(scope, node.name, network, [bit for word in node.words for bit in scope.bits(word)])
+
+
+def _draw(scope: _Scope, name: str, network: LutNetwork, bits: list[Value]) -> None:
+    outputs = draw_network(
+        scope.m, network, bits, style=scope.part.style, prefix=f"{name}_", platform=scope.platform
+    )
+    scope.nets[name] = outputs
 
 
 def _register(scope: _Scope, node: Register) -> None:

@@ -5,7 +5,7 @@ CELLS_FILE = "xilinx_cells_sim.v"
 
 
 def cells_model() -> str:
-    """Behavioural LUT1 … LUT6, MUXF7 and MUXF8 (UG953), Verilog-2001."""
+    """Behavioural LUT1 … LUT6, LUT6_2, MUXF7 and MUXF8 (UG953), Verilog-2001."""
     modules = []
     for inputs in range(1, 7):
         names = [f"I{i}" for i in range(inputs)]
@@ -16,6 +16,13 @@ def cells_model() -> str:
             f"    output wire O,\n" + ",\n".join(f"    input  wire {pin}" for pin in names) + "\n);\n"
             f"    assign O = INIT[{address}];\nendmodule\n"
         )
+    modules.append(
+        "module LUT6_2 #(parameter [63:0] INIT = 64'h0) (\n"
+        "    output wire O5,\n    output wire O6,\n"
+        + ",\n".join(f"    input  wire I{i}" for i in range(6))
+        + "\n);\n    assign O5 = INIT[{1'b0, I4, I3, I2, I1, I0}];\n"
+        "    assign O6 = INIT[{I5, I4, I3, I2, I1, I0}];\nendmodule\n"
+    )
     pins = "    output wire O,\n    input  wire I0,\n    input  wire I1,\n    input  wire S"
     modules += [
         f"module {kind} (\n{pins}\n);\n    assign O = S ? I1 : I0;\nendmodule\n"

@@ -9,6 +9,7 @@ from amaranth.lib.wiring import Component
 from hdl_templates.hierarchy import Emission, Part
 from wnn2hdl.emit.expression import constant
 from wnn2hdl.emit.netlist import Module, read_modules
+from wnn2hdl.emit.packing import packed
 from wnn2hdl.emit.statements import UNUSED, Statement, statements
 
 LINT = """\
@@ -47,7 +48,9 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
             f"{part.module_name} holds {sorted(foreign)}, for which there is no Verilog"
         )
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header)
-    return "\n".join([comment + LINT, *(_module(inner, modules[name]) for name, inner in parts.items())])
+    return "\n".join(
+        [comment + LINT, *(_module(inner, packed(modules[name])) for name, inner in parts.items())]
+    )
 
 
 def _rtlil(component: Component, name: str, prefix: str) -> str:

@@ -149,12 +149,10 @@ class Circuit:
         A table that is alone in its circuit goes by the name of the circuit, all others by their own, or by
         both where two would be called alike.
         """
-        tables = [
-            (name, node, sum(isinstance(other, Table) for other in circuit.nodes) == 1)
-            for name, circuit in self.definitions().items()
-            for node in circuit.nodes
-            if isinstance(node, Table)
-        ]
+        tables = []
+        for name, circuit in self.definitions().items():
+            own = [node for node in circuit.nodes if isinstance(node, Table)]
+            tables += [(name, node, len(own) == 1) for node in own]
         short = Counter(name if alone else node.name for name, node, alone in tables)
         return {
             (plain if short[plain] == 1 else f"{name}_{node.name}"): node

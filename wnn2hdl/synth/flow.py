@@ -38,7 +38,8 @@ _MAP_ALL = f"{OPTIONS} -run prepare:check\n"
 
 # Modules that keep their hierarchy are dissolved once they are mapped: `sta` looks into one module only.
 # synth_xilinx takes the timing arcs of CARRY4 and of flip-flops away, and `sta` then reports a path that ends
-# before the carry chain (measured, Yosys 0.70), so the mapped module joins a fresh copy of the cells.
+# before the carry chain (measured, Yosys 0.70), so the mapped module joins a fresh copy of the cells. There
+# are no timing arcs for a LUT6_2, which is two tables.
 _SCRIPT = """\
 read_verilog -lib -specify +/xilinx/cells_sim.v
 design -save cells
@@ -49,13 +50,21 @@ tee -q -o stat.json stat -json
 setattr -mod -unset keep_hierarchy *
 flatten
 write_verilog -noattr netlist.v
+techmap -map pair.v
 design -stash mapped
 design -load cells
 design -copy-from mapped -as {top} {top}
 sta
 """
 
-_FLOW = cache.digest(_SCRIPT + _MAP_LOGIC + _MAP_ALL)
+_PAIR = """\
+module LUT6_2 #(parameter [63:0] INIT = 0) (output O6, O5, input I0, I1, I2, I3, I4, I5);
+LUT6 #(.INIT(INIT)) upper (.O(O6), .I0(I0), .I1(I1), .I2(I2), .I3(I3), .I4(I4), .I5(I5));
+LUT5 #(.INIT(INIT[31:0])) lower (.O(O5), .I0(I0), .I1(I1), .I2(I2), .I3(I3), .I4(I4));
+endmodule
+"""
+
+_FLOW = cache.digest(_SCRIPT + _MAP_LOGIC + _MAP_ALL + _PAIR)
 
 
 @dataclass(frozen=True)
@@ -192,6 +201,7 @@ def _map(verilog: str, top: str) -> _Mapped:
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-synth-") as name:
         folder = Path(name)
         (folder / "design.v").write_text(verilog, encoding="utf-8")
+        (folder / "pair.v").write_text(_PAIR, encoding="utf-8")
         log = _run(folder, top)
         try:
             statistics = json.loads((folder / "stat.json").read_text(encoding="utf-8"))

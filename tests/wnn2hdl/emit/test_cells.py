@@ -8,19 +8,21 @@ import pytest
 from wnn2hdl.emit import CELLS_FILE, cells_model
 from wnn2hdl.tools import find_yosys, lint_icarus, lint_verilator
 
-CELLS = [*(f"LUT{inputs}" for inputs in range(1, 7)), "MUXF7", "MUXF8"]
+CELLS = [*(f"LUT{inputs}" for inputs in range(1, 7)), "LUT6_2", "MUXF7", "MUXF8"]
 
 
 def instance(cell: str, name: str) -> str:
     """A module around a cell; a LUT's contents are a mixture of bits."""
+    outputs = ["O5", "O6"] if cell == "LUT6_2" else ["O"]
     if cell.startswith("MUX"):
         ports, contents = ["I0", "I1", "S"], ""
     else:
-        inputs = int(cell[3:])
+        inputs = int(cell[3])
         ports = [f"I{i}" for i in range(inputs)]
         contents = f"#(.INIT({1 << inputs}'h{0x9E3779B97F4A7C15 % (1 << (1 << inputs)):x})) "
-    pins = ", ".join(f".{port}({port})" for port in (*ports, "O"))
-    return f"module {name}(input {', '.join(ports)}, output O);\n{cell} {contents}cell_({pins});\nendmodule\n"
+    pins = ", ".join(f".{port}({port})" for port in (*ports, *outputs))
+    head = f"module {name}(input {', '.join(ports)}, output {', '.join(outputs)});"
+    return f"{head}\n{cell} {contents}cell_({pins});\nendmodule\n"
 
 
 @pytest.mark.parametrize("cell", CELLS)

@@ -385,7 +385,8 @@ def prove_pipeline(text: str, folder: Path) -> None:
     (folder / "emitted.v").write_text(text)
     # The state of each is made of the last five samples, so an induction over six steps decides.
     script = """
-        read_verilog golden.v emitted.v
+        read_verilog +/xilinx/cells_sim.v golden.v emitted.v
+        hierarchy
         setattr -mod -unset keep_hierarchy *
         proc; flatten; opt_clean
         miter -equiv -flatten golden my_pipeline miter
