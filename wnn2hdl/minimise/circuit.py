@@ -7,7 +7,7 @@ from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.minimise.espresso import Minimised, espresso
 from wnn2hdl.minimise.portfolio import map_luts
-from wnn2hdl.progress import Progress
+from wnn2hdl.progress import Progress, reported
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,16 +39,14 @@ def minimise(circuit: Circuit, effort: int, progress: Progress) -> MinimisedCirc
     covers: dict[str, Minimised] = {}
     methods: dict[str, str] = {}
     mapped: dict[int, Table] = {}
-    for name, table in circuit.tables().items():
+    tables = circuit.tables()
+    for name, table in reported(tables.items(), "minimising tables", len(tables), progress):
         if not isinstance(table.function, TruthTable):
             continue
-        progress(f"minimising {name}", 0, 2)
         covers[name] = espresso(table.function)
-        progress(f"minimising {name}", 1, 2)
         mapping = map_luts(table.function, effort=effort)
         methods[name] = mapping.method
         mapped[id(table)] = replace(table, function=mapping.network)
-        progress(f"minimising {name}", 2, 2)
 
     def change(definition: Circuit) -> Circuit:
         nodes = (mapped.get(id(node), node) if isinstance(node, Table) else node for node in definition.nodes)

@@ -67,7 +67,7 @@ def test_a_pixel_alone_in_both_styles(model: WisardModel, tmp_path: Path, style:
     assert built.failure is None
     starts = [step for step, done in told if done == 0]
     assert starts == [
-        "minimising pixel",
+        "minimising tables",
         "writing Verilog",
         "simulating, proving, counting",
     ]
