@@ -1,4 +1,4 @@
-"""Accuracy on unseen images against LUTs a pixel, of several classifiers, in one table.
+"""Accuracy on unseen images against LUTs per pixel, of several classifiers, in one table.
 
     python benchmarks/accuracy.py IMAGES MASKS [--mappings 20] [--seed 0]
 
@@ -97,7 +97,7 @@ def neighbourhood(dataset: Dataset, size: int, seed: int) -> tuple[float, int]:
     """
 
     def train(images: Dataset) -> WisardModel:
-        return train_neighbourhood(images, size, max_luts=None, seed=seed, progress=silent)
+        return train_neighbourhood(images, size, luts_per_pixel=None, seed=seed, progress=silent)
 
     right = pixels = 0
     for training, test in folds(dataset.names, FOLDS):

@@ -141,7 +141,7 @@ def main() -> None:
     rival, rival_seconds = synthesised([as_case(table) for table, _ in pairs])
     agreement("the table as a case statement", ours, rival)
     rival_each = rival_seconds / len(pairs)
-    print(f"synth_xilinx: {rival_each:.2f} s a trial on the same cores; ratio {rival_each / each:.0f}")
+    print(f"synth_xilinx: {rival_each:.2f} s per trial on the same cores; ratio {rival_each / each:.0f}")
 
 
 if __name__ == "__main__":

@@ -106,7 +106,7 @@ def _codes(path: Path, kind: str, *, checked: bool) -> tuple[NDArray[np.int64], 
     """
     head = plain_head(path, kind)
     if head is not None:
-        colours, valid = decode(path, alpha="mask")
+        colours, valid = decode(path, alpha="exclude")
         codes, labelled = colour_codes(colours), np.ones(colours.shape[:2], dtype=np.bool_)
         labelled = labelled if valid is None else valid
         index = indices(path)

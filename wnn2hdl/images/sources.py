@@ -181,13 +181,13 @@ def open_picture(path: Path, reading: Reading = Reading()) -> Source:  # noqa: B
     head = None if chosen else plain_head(path, kind)
     if head is not None and not _in_windows(kind, head):
         plain = PlainFile(path, head, reading.alpha)
-        if reading.mask is None:
+        if reading.exclude is None:
             return plain
         plain.require_upright()
-        return Masked(plain, reading.mask)
+        return Masked(plain, reading.exclude)
     raster = RasterReader(path, reading)
     raster.require_upright()
-    return raster if reading.mask is None else Masked(raster, reading.mask)
+    return raster if reading.exclude is None else Masked(raster, reading.exclude)
 
 
 def _in_windows(kind: str, head: PlainHead) -> bool:

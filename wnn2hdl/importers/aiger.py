@@ -96,7 +96,7 @@ def _binary(content: bytes, at: int, sizes: Sizes) -> Body:
 
 
 def _deltas(content: bytes, at: int, count: int) -> tuple[NDArray[np.int64], int]:
-    """So many numbers of seven bits a byte, the lowest first; the last byte of each has no high bit."""
+    """So many numbers of seven bits per byte, the lowest first; the last byte of each has no high bit."""
     raw = np.frombuffer(content, dtype=np.uint8, offset=at)[: 5 * count]
     ends = np.flatnonzero(raw < 0x80)[:count]
     if len(ends) < count:

@@ -27,12 +27,12 @@ class ImportOptions:
     """What a file may leave open. Each importer names those that it takes.
 
     Attributes:
-        bleaching: a fixed threshold in place of a dynamic one: another classifier.
+        bleach: a fixed threshold in place of a dynamic one: another classifier.
         config: a second file that belongs to the first.
         classes: how many classes the outputs are grouped into.
     """
 
-    bleaching: int | None = None
+    bleach: int | None = None
     config: Path | None = None
     classes: int | None = None
 

@@ -33,14 +33,15 @@ class Reading:
         bands: band numbers from 1 of red, green and blue, or of one band; None for what the file states.
         scale: values ``(low, high)`` that become 0 and 255; what lies beyond is cut off. None for 8-bit
             samples as they are. Where the file states a scale and an offset, the values are in its units.
-        alpha: what a band marked as alpha holds; None for a mask, refused if it looks like data.
-        mask: a raster of the same size whose pixels other than 0 are left out (clouds).
+        alpha: what a band marked as alpha holds; None excludes pixels by it, and refuses one that looks like
+            data.
+        exclude: a raster of the same size whose pixels other than 0 are left out (clouds).
     """
 
     bands: tuple[int, ...] | None = None
     scale: tuple[float, float] | None = None
     alpha: AlphaMeaning | None = None
-    mask: Path | None = None
+    exclude: Path | None = None
 
 
 class RasterReader:
@@ -50,7 +51,7 @@ class RasterReader:
 
     Args:
         path: a file of one of the formats of `wnn2hdl.raster.formats`.
-        reading: how; its mask is not looked at here.
+        reading: how; `exclude` is not looked at here.
 
     Attributes:
         height: pixels; likewise `width`.

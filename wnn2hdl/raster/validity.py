@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster.sampling import sampled
 
-AlphaMeaning = Literal["mask", "data"]
+AlphaMeaning = Literal["exclude", "data"]
 """What a band marked alpha holds: which pixels to leave out, or something else that is not looked at."""
 
 _MOST_PARTLY = 0.02
@@ -140,5 +140,5 @@ def require_mask(parts: list[NDArray[Any]], path: Path) -> None:
         raise InputError(
             "a band is marked as alpha, and looks like data",
             value=f"{path} ({len(between) / count:.0%} of its pixels are neither clear nor opaque)",
-            hint="say --alpha data if it is (near-infrared, say), or --alpha mask to leave these pixels out",
+            hint="give --alpha data if it is (as near-infrared), or --alpha exclude to leave its pixels out",
         )

@@ -31,7 +31,7 @@ class ClassWriter:
     Args:
         path: the GeoTIFF.
         height: rows that will be written.
-        width: pixels a row.
+        width: pixels per row.
         georeference: kept as it is.
         colours: red, green, blue of each class, 0 to 255.
 

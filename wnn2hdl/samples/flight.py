@@ -1,6 +1,6 @@
 """The embedded flight: a map of town and country, and the frames of a UAV over it in another season.
 
-The map is a picture in the grid of `wnn2hdl.samples.georeference`, half a metre a pixel. Where the UAV is, is
+The map is a picture in the grid of `wnn2hdl.samples.georeference`, half a metre per pixel. Where the UAV is, is
 decided in that grid, and its latitude and longitude follow from it by the projection, so they are exact.
 The ground is the plane of the grid, without any height.
 """

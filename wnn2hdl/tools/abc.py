@@ -51,7 +51,7 @@ def abc_version() -> str:
 
 
 def run_abc(script: str, *, timeout: float, cwd: Path | None = None) -> str:
-    """Run a script of ABC commands, one a line or parted by semicolons, in a new process.
+    """Run a script of ABC commands, one per line or parted by semicolons, in a new process.
 
     Args:
         script: the commands.

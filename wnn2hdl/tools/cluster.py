@@ -1,4 +1,4 @@
-"""Jobs on many machines, by Dask distributed: a few a core at a time, and a dying worker loses nothing."""
+"""Jobs on many machines, by Dask distributed: a few per core at a time, and a dying worker loses nothing."""
 
 import platform
 from collections.abc import Callable, Generator, Iterable, Mapping

@@ -57,7 +57,7 @@ class Yosys:
     abc_path: Path | None
 
     def run(self, script: str, *, timeout: float, cwd: Path | None = None) -> str:
-        """Run a script of Yosys commands, one a line, in a new process with an empty design.
+        """Run a script of Yosys commands, one per line, in a new process with an empty design.
 
         Args:
             script: the commands.

@@ -45,7 +45,7 @@ def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path, monkeypatch: 
     }
     assert all((tmp_path / link).is_file() for link in links)
     assert made.reference.failure is made.smallest.failure is None
-    assert made.smallest.report["parts"]["pixel"]["luts"] <= demo.MAX_LUTS
+    assert made.smallest.report["parts"]["pixel"]["luts"] <= demo.LUTS_PER_PIXEL
     assert made.windows == (demo.SIDE - 2) ** 2
     assert made.flight is not None
     (*_, whole) = made.flight.result.searches

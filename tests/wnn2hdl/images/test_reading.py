@@ -77,9 +77,9 @@ def test_transparent_pixels_are_left_out(tmp_path: Path) -> None:
 def test_near_infrared_in_the_alpha_of_a_png_is_questioned(tmp_path: Path) -> None:
     infrared = np.arange(54, dtype=np.uint8).reshape(6, 9) + 100
     path = save(tmp_path / "a.png", np.dstack([RGB, infrared]))
-    with pytest.raises(InputError, match="say --alpha data"):
+    with pytest.raises(InputError, match="give --alpha data"):
         read_picture(path)
-    assert read_picture(path, Reading(alpha="mask")).left_out == 54
+    assert read_picture(path, Reading(alpha="exclude")).left_out == 54
 
 
 @pytest.mark.parametrize("channels", [1, 3])

@@ -68,7 +68,7 @@ def test_the_first_mapped_bit_is_the_lowest_and_the_last_label_wins(write: Write
 def test_bleaching_stays_dynamic_unless_it_is_asked_for(write: Write) -> None:
     source = Source(write(model(bleachingActivated=True, confidence=2)))
     assert read(source, ImportOptions()).bleaching == Dynamic(2)
-    fixed = read(source, ImportOptions(bleaching=4))
+    fixed = read(source, ImportOptions(bleach=4))
     assert fixed.bleaching == 4
     assert fixed.origin["bleaching"] == "fixed at 4 by request: another classifier than the file's"
 

@@ -318,9 +318,9 @@ def test_the_commands_are_those_of_the_report(
 def test_the_command_that_trained_the_model_is_told_where_the_model_tells_it(
     report: dict[str, Any], networks: dict[str, LutNetwork]
 ) -> None:
-    notes = report["model"]["training"] | {"command": "wnn2hdl train --max-luts 2"}
+    notes = report["model"]["training"] | {"command": "wnn2hdl train --luts-per-pixel 2"}
     page = build_page(report | {"model": report["model"] | {"training": notes}}, networks)
-    assert f"<code>wnn2hdl train --max-luts 2 -o {report['name']}-again.json\n" in page
+    assert f"<code>wnn2hdl train --luts-per-pixel 2 -o {report['name']}-again.json\n" in page
     assert "That file does not tell" not in page
     assert '<th scope="row">command</th>' not in page
 

@@ -90,13 +90,13 @@ def test_the_most_accurate_that_fits_is_returned_with_its_figures(
 
 
 def test_a_budget_below_one_lut_is_refused(dataset: Dataset) -> None:
-    with pytest.raises(InputError, match="at least one LUT a pixel: 0; allow 1 or more"):
+    with pytest.raises(InputError, match="at least one LUT per pixel: 0; allow 1 or more"):
         train_under_budget(dataset, 0, trials=0, seed=0, progress=silent)
 
 
 def test_a_budget_that_nothing_fits_is_refused() -> None:
     several = from_samples(2, 32, seed=0, every_kind=True)
-    with pytest.raises(InputError, match="no classifier of at most 1 LUTs a pixel was found: 0 candidates"):
+    with pytest.raises(InputError, match="no classifier of at most 1 LUTs per pixel was found: 0 candidates"):
         train_under_budget(several, 1, trials=0, seed=0, progress=silent)
 
 

@@ -51,7 +51,7 @@ def write_classes(
 ) -> Coverage:
     """Classify a picture and write its class raster.
 
-    Memory holds the windows being worked on and one row of windows, a byte a pixel. Finished windows are
+    Memory holds the windows being worked on and one row of windows, one byte per pixel. Finished windows are
     kept: an interrupted call that is repeated classifies the missing ones only.
 
     Args:

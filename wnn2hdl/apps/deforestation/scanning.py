@@ -113,9 +113,9 @@ class Scanner:
             ExtraMissingError: the extra ``geo`` is not installed.
         """
         if picture.is_dir():
-            if before or self.options.reading.mask:
+            if before or self.options.reading.exclude:
                 raise InputError(
-                    "--before and --mask go with one picture, not with a folder",
+                    "--before and --exclude go with one picture, not with a folder",
                     value=picture,
                     hint="name a file",
                 )
@@ -248,8 +248,8 @@ class Scanner:
         elif minimum is not None and minimum.hectares:
             raise InputError(
                 "the picture has no georeference, so its pixels have no area",
-                value=f"--minimum-area {minimum.hectares:g}",
-                hint="say --minimum-pixels",
+                value=f"--min-area {minimum.hectares:g}",
+                hint="give --min-pixels",
             )
 
     def _change(self, output: Path) -> dict[str, Any]:

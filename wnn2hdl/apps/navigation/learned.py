@@ -174,7 +174,7 @@ class Learned:
             name: (value, getattr(conditions.camera, name)) for name, value in vars(known.camera).items()
         }
         pairs["--heading-tolerance"] = (known.tolerance.heading_deg, conditions.tolerance.heading_deg)
-        pairs["--scale-tolerance"] = (known.tolerance.scale * 100, conditions.tolerance.scale * 100)
+        pairs["--height-tolerance"] = (known.tolerance.scale * 100, conditions.tolerance.scale * 100)
         for kind, half in windows.items():
             if kind not in self.windows:
                 raise InputError(

@@ -20,7 +20,7 @@ TABLE_VERSION = 1
 class PublishedMethod:
     """A row of the reference's table: another flight, 35 frames, searched within ±95 m of the truth.
 
-    Its frames are 219 pixels wide and its windows 599, at half a metre a pixel.
+    Its frames are 219 pixels wide and its windows 599, at half a metre per pixel.
     """
 
     name: str
@@ -256,7 +256,7 @@ def _search_sections(search: SearchResult, calibrated: bool) -> list[str]:
         _PUBLISHED_NOTE,
         "What the confidence is worth:",
         _table(
-            ["method", "frames", "fixed", f"fixes < {FAR_M:g} m", "mean error of fixes m", "s a frame"],
+            ["method", "frames", "fixed", f"fixes < {FAR_M:g} m", "mean error of fixes m", "s per frame"],
             confident,
         ),
         _without_fix(search),

@@ -51,7 +51,7 @@ class Pose:
 
 
 def read_poses(path: Path) -> tuple[Pose, ...]:
-    """Read a CSV with the columns `pose_table.COLUMNS`, one line a frame; those of the position may lack.
+    """Read a CSV with the columns `pose_table.COLUMNS`, one line per frame; those of the position may lack.
 
     Returns:
         The poses in the order of flight, by `counter.in_order`.
@@ -62,7 +62,7 @@ def read_poses(path: Path) -> tuple[Pose, ...]:
     """
     poses = [_pose(row, where) for where, row in read_rows(path)]
     if not poses:
-        raise InputError("no poses", value=path, hint="give one line a frame")
+        raise InputError("no poses", value=path, hint="give one line per frame")
     seen: set[str] = set()
     for pose in poses:
         if pose.frame in seen:

@@ -32,7 +32,7 @@ class Recording:
         map_name: for tables.
         world: the map.
         camera: as it is known before any calibration.
-        poses: one a frame, in the order of the flight.
+        poses: one per frame, in the order of the flight.
         read: the frame of a pose, uint8 ``[height, width, 3]``.
     """
 

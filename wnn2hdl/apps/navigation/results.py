@@ -65,7 +65,7 @@ class MethodResult:
 
     Attributes:
         name: as the tables show it, "perspective + Canny".
-        fixes: one a frame, in the order of the flight.
+        fixes: one per frame, in the order of the flight.
         tracked: whether a filter over the track made them of the method's own.
         weightless: whether the method is the project's own, the weightless edges.
     """
@@ -136,7 +136,7 @@ class MethodResult:
 
     @property
     def mean_seconds(self) -> float | None:
-        """Mean processor time a frame."""
+        """Mean processor time per frame."""
         return _mean([fix.seconds for fix in self.fixes])
 
 
@@ -200,7 +200,7 @@ class FlightResult:
 
     Attributes:
         map_name: file name of the map.
-        ground_sample_distance_m: metres a pixel at which frames and map were compared.
+        ground_sample_distance_m: metres per pixel at which frames and map were compared.
         focal_px: focal length in pixels of the frames as given or fitted.
         tilts_deg: the camera's forward tilt as given, or as fitted for each stretch of the flight, degrees.
         calibrated_on: frames on which unknowns of the camera were fitted; empty if it was given.

@@ -35,7 +35,7 @@ from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.ir import WINDOW_BITS, WINDOW_CODES, EdgeFilter, bits_to_codes, codes_to_bits, window_codes
 
 GSD_M = 2.0
-"""Ground sample distance that the edges are taken at, metres a pixel."""
+"""Ground sample distance that the edges are taken at, metres per pixel."""
 
 THRESHOLD_M = 30.0
 """Side of the square whose mean is the local threshold: larger than a house, smaller than a field."""
@@ -73,7 +73,7 @@ class WeightlessEdges:
     """Binary images and edge filters, of which only one direction's patterns are kept.
 
     Attributes:
-        gsd_m: ground sample distance of the pictures that it is meant for, metres a pixel.
+        gsd_m: ground sample distance of the pictures that it is meant for, metres per pixel.
         side: of the local threshold's square, pixels, odd.
         east: the filter of edges whose brighter side lies east.
     """

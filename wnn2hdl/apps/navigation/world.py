@@ -166,7 +166,7 @@ class WorldMap:
         regions that reach the picture's edge (mosaics are often saved without a mask), the grid is not valid.
 
         Args:
-            gsd_m: metres a pixel; the map's own if not given.
+            gsd_m: metres per pixel; the map's own if not given.
 
         Raises:
             InputError: the map cannot be read, lies nowhere, or is too small or too large for such a grid.

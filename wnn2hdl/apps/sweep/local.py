@@ -12,7 +12,7 @@ from wnn2hdl.apps.sweep.trial import Record, run_trials
 from wnn2hdl.errors import ToolError
 
 BATCH = 10
-"""Trials a task: about half a second of work, so handing it over costs nothing and a kill loses little."""
+"""Trials per task: about half a second of work, so handing it over costs nothing and a kill loses little."""
 
 
 def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Record]]:

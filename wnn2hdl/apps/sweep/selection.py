@@ -25,8 +25,8 @@ class Surface:
     """Means over the valid trials of each architecture; NaN where there is none.
 
     Attributes:
-        address_bits: n of each row.
-        rams: k of each column.
+        address_bits: of each row.
+        rams: of each column.
         accuracy: float64 ``[rows, columns]``, of the classifiers on the held-out pixels.
         luts: float64 ``[rows, columns]``, per pixel.
         valid: int64 ``[rows, columns]``, valid trials; likewise ``saturated`` and ``failed``.
@@ -114,7 +114,7 @@ class Finalist:
     """An architecture tried often.
 
     Attributes:
-        cell: n and k.
+        cell: address bits and RAMs.
         accuracies: of the valid trials, by mapping seed.
         luts: of the same trials.
         saturated: how many were left out.
@@ -198,21 +198,19 @@ def _reasons(
         for (one, other), (comparison, p_value) in comparisons.items()
         if one == best.cell and p_value < LEVEL
     ]
-    text = (
-        f"{label(best.cell)} has the highest mean over {len(best.accuracies)} valid trials ({figures(best)})"
-    )
-    text += f" and is significantly more accurate than {', '.join(beaten)}." if beaten else "."
+    text = f"{label(best.cell)}: the highest mean over {len(best.accuracies)} valid trials ({figures(best)})"
+    text += f", significantly more accurate than {'; '.join(beaten)}." if beaten else "."
     others = [label(finalist.cell) for finalist in equals[1:]]
     if others:
-        text += f" It is not shown to differ from {', '.join(others)}."
+        text += f" Not shown to differ from it: {'; '.join(others)}."
     if chosen is not best:
-        text += f" Of these {label(chosen.cell)} takes the fewest LUTs ({figures(chosen)})."
+        text += f" The fewest LUTs of these: {label(chosen.cell)} ({figures(chosen)})."
     return f"{text} Chosen: {label(chosen.cell)}."
 
 
 def label(cell: Cell) -> str:
-    """``n = 4, k = 16``."""
-    return f"n = {cell[0]}, k = {cell[1]}"
+    """``4 address bits, 16 RAMs``."""
+    return f"{cell[0]} address bits, {cell[1]} RAMs"
 
 
 def _accuracy(record: Record) -> float:

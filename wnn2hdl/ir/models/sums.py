@@ -85,7 +85,7 @@ class TableSumModel(ClassifierModel):
     Attributes:
         encoder: what turns features into the input bits; the first layer takes ``layers[0].input_bits`` of
             them as a word, the first the least significant.
-        classes: class names, one a node of the last layer.
+        classes: class names, one per node of the last layer.
         layers: the first reads words of the input bits, each later one the nodes of the one before.
         origin: where the model comes from.
     """

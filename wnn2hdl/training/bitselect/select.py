@@ -60,7 +60,7 @@ def select_bits(
         )
     if not 1 <= luts <= MOST_LUTS:
         raise InputError(
-            "bit selection makes classifiers of 1 to 3 LUTs a pixel",
+            "bit selection makes classifiers of 1 to 3 LUTs per pixel",
             value=luts,
             hint=f"ask for 1 to {MOST_LUTS}",
         )

@@ -50,7 +50,7 @@ def scan(model_file: Path) -> Scan:
 
 
 def save_scene(path: Path, pixels: NDArray[np.unsignedinteger[Any]], east: float = 400_000) -> Path:
-    """A GeoTIFF of 100 m a pixel on the central meridian's side of a UTM zone."""
+    """A GeoTIFF of 100 m per pixel on the central meridian's side of a UTM zone."""
     place = {"crs": "EPSG:32720", "transform": rasterio.Affine(100, 0, east, 0, -100, 9_100_000)}
     size = {"height": pixels.shape[0], "width": pixels.shape[1], "count": 3, "dtype": pixels.dtype.name}
     with rasterio.open(path, "w", driver="GTiff", photometric="rgb", **size, **place) as target:
@@ -139,7 +139,7 @@ def test_clouds_are_left_out(
     clouds = np.zeros(pixels.shape[:2], dtype=np.uint8)
     clouds[:75] = 1
     write_png(tmp_path / "clouds.png", clouds)
-    options = ScanOptions(Reading(mask=tmp_path / "clouds.png"), Method(square=20))
+    options = ScanOptions(Reading(exclude=tmp_path / "clouds.png"), Method(square=20))
     summary = scan(picture_file, tmp_path / "out", options=options)
     found = classes(tmp_path / "out")
     assert (found[:75] == NODATA).all()
@@ -312,7 +312,7 @@ def test_the_earlier_date_has_clouds_of_its_own(
     write_png(tmp_path / "clouds.png", clouds)
     before, after = (save_scene(tmp_path / name, pixels) for name in ("before.tif", "after.tif"))
     summary = scan(
-        after, tmp_path / "out", before=before, before_reading=Reading(mask=tmp_path / "clouds.png")
+        after, tmp_path / "out", before=before, before_reading=Reading(exclude=tmp_path / "clouds.png")
     )
     assert summary["classified_pixels"] == clouds.size
     assert summary["change"]["compared_pixels"] == clouds.size - clouds.sum()

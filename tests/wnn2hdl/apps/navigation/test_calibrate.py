@@ -21,7 +21,7 @@ FIT = Fit(3, 2.5, 2.0, 0.7)
 
 
 def country(side: int = 250, seed: int = 0) -> MapGrid:
-    """A map of smooth blobs, two metres a pixel."""
+    """A map of smooth blobs, two metres per pixel."""
     noise = np.random.default_rng(seed).normal(size=(side, side)).astype(np.float32)
     blobs = cv2.GaussianBlur(noise, (0, 0), 2)
     picture = np.clip(128 + 40 * blobs / blobs.std(), 1, 254).astype(np.uint8)

@@ -47,7 +47,7 @@ def test_the_same_conditions_are_accepted(learned: Learned) -> None:
     [
         ({"map": "0" * 64}, "the calibration belongs to another map"),
         ({"tolerance": PoseTolerance(6.0)}, "--heading-tolerance was 0.0, and now is 6.0"),
-        ({"tolerance": PoseTolerance(0.0, 0.08)}, "--scale-tolerance was 0.0, and now is 8.0"),
+        ({"tolerance": PoseTolerance(0.0, 0.08)}, "--height-tolerance was 0.0, and now is 8.0"),
     ],
 )
 def test_other_conditions_are_refused(learned: Learned, change: dict[str, Any], fault: str) -> None:

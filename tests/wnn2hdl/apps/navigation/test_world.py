@@ -17,7 +17,7 @@ from wnn2hdl.raster import Reading
 
 LATITUDE, LONGITUDE = 24.26, 120.72
 DEGREES = Affine(4.93e-6, 4.0e-8, LONGITUDE, 2.0e-8, -4.51e-6, LATITUDE)
-"""About 0.5 m a pixel, turned by half a degree."""
+"""About 0.5 m per pixel, turned by half a degree."""
 METRES = Affine(0.5, 0, 268_600, 0, -0.5, 2_684_800)
 """In UTM zone 51 north."""
 

@@ -126,8 +126,8 @@ def test_the_most_accurate_is_chosen_where_the_test_shows_it() -> None:
     comparison, p_value = decision.comparisons[(4, 16), (5, 10)]
     assert comparison.test == "signed-rank"
     assert p_value < 1e-6
-    assert "significantly more accurate than n = 5, k = 10" in decision.reasons
-    assert decision.reasons.endswith("Chosen: n = 4, k = 16.")
+    assert "significantly more accurate than 5 address bits, 10 RAMs" in decision.reasons
+    assert decision.reasons.endswith("Chosen: 4 address bits, 16 RAMs.")
 
 
 def test_of_those_not_shown_to_differ_the_smallest_is_chosen() -> None:

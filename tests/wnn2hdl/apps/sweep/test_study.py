@@ -100,7 +100,7 @@ def test_trials_that_end_in_another_order_give_the_same_tables(
 @pytest.mark.slow
 def test_a_sweep_killed_by_force_goes_on_where_it_stopped(tmp_path: Path) -> None:
     program = "import sys; from wnn2hdl.cli import main, sweep; sys.exit(main())"
-    options = ["sweep", "--n", "2..3", "--k", "2..9", "--trials", "6", "-o"]
+    options = ["sweep", "--address-bits", "2..3", "--rams", "2..9", "--trials", "6", "-o"]
     command = [sys.executable, "-c", program, *options]
 
     def run(folder: Path) -> "subprocess.Popen[bytes]":

@@ -76,7 +76,7 @@ def test_more_than_two_classes_are_refused(scenes: list[Colours]) -> None:
 
 @pytest.mark.parametrize("luts", [0, 4])
 def test_other_numbers_of_luts_are_refused(scenes: list[Colours], luts: int) -> None:
-    with pytest.raises(InputError, match=rf"1 to 3 LUTs a pixel: {luts}; ask for 1 to 3"):
+    with pytest.raises(InputError, match=rf"1 to 3 LUTs per pixel: {luts}; ask for 1 to 3"):
         select_bits(scenes, CLASSES, luts=luts, seed=0)
 
 

@@ -159,7 +159,7 @@ class MapIndex:
         return cells
 
     def _shrunk(self) -> Layers:
-        """The map shrunk, strip by strip: layers of the full map would take 4 or 8 bytes a pixel each."""
+        """The map shrunk, strip by strip: layers of the full map would take 4 or 8 bytes per pixel each."""
         strip = 256 * self._reduction
         strips = [
             Layers.of(self._image[top : top + strip], self._valid[top : top + strip], np.float32).shrink(
