@@ -3,7 +3,7 @@
     python benchmarks/accuracy.py IMAGES MASKS [--mappings 20] [--seed 0]
 
 Five-fold cross-validation by image over a folder of pictures and one of masks. LUTs are those of the
-classifier trained on all images, as mapped; logistic regression is no circuit here and has none. The last
+classifier trained on all images, as mapped; logistic regression is not a circuit here and has none. The last
 rows look at a pixel's neighbours, too.
 """
 

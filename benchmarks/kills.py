@@ -44,7 +44,8 @@ COMMANDS: Mapping[str, Sequence[str]] = {
 POLL_SECONDS = 0.005
 
 ATTEMPTS = 3
-"""So many times as often as it is to be killed a command is started: on a busy machine it may end before."""
+"""How many times as often as it has to be killed a command is started: on a busy machine it may end
+before."""
 
 
 @dataclass(frozen=True)

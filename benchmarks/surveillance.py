@@ -2,8 +2,9 @@
 
     python benchmarks/surveillance.py IMAGES MASKS [--seed 0] [--mappings 5] [--pixels 5000]
 
-Five folds by image. Every classifier of single pixels is trained on the same pixels: so many of each training
-image, drawn at random; those of neighbourhoods draw their own windows. Squares are those of the reference
+Five folds by image. Every classifier of single pixels is trained on the same pixels: equally many of each
+training image, drawn at random; those of neighbourhoods draw their own windows. Squares are those of the
+reference
 design: 20 x 20, half of the pixels vote; they are scored against the majority of each square of the mask, and
 against its pixels.
 """

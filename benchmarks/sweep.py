@@ -6,7 +6,7 @@ how long that takes. Synthesis and sweep use the same number of cores, and nothi
 
 Three designs of each sampled trial are synthesised: the circuit that the sweep mapped, as `compile` writes it
 in its two styles, vendor's cells and equations; and the trial's table as a `case` statement with x for
-don't-cares, which is what a sweep without a mapper of its own would synthesise, and whose time is compared.
+don't-cares, which is what a sweep without its own mapper would synthesise, and whose time is compared.
 Without images the embedded landscapes are swept.
 """
 

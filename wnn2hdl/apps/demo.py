@@ -94,7 +94,7 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
         folder: gets the landscapes (``training``, ``test``), ``sweep``, the builds ``reference`` and
             ``smallest``, ``scan``, ``flight`` and the page.
         seed: of the tuple mappings.
-        progress: told of every stage.
+        progress: called with every stage.
 
     Raises:
         InputError: the folder cannot be written, or something else is where a build is to go.

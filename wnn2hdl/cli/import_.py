@@ -43,7 +43,7 @@ class FormatType(click.ParamType[str]):
 @click.option(
     "--config",
     type=file,
-    help="Read this config.json of KANELÉ truth tables.  [default: the one beside FILE]",
+    help="Read this config.json of KANELE truth tables.  [default: the one beside FILE]",
 )
 @click.option(
     "--classes",
@@ -63,7 +63,7 @@ def import_command(
 ) -> None:
     """Turn another tool's trained model, FILE, into a model file.
 
-    Formats: wisardpkg JSON, BTHOWeN .pickle.lzma, DWN checkpoints of PyTorch, KANELÉ truth tables, AIGER,
+    Formats: wisardpkg JSON, BTHOWeN .pickle.lzma, DWN checkpoints of PyTorch, KANELE truth tables, AIGER,
     BLIF. Files are read as data: nothing in them is run, and PyTorch is not needed.
 
     \b

@@ -52,7 +52,7 @@ class CalibrationType(click.ParamType[int | Path]):
 class MethodsType(click.ParamType[tuple[str, ...]]):
     """Keys of methods, by commas."""
 
-    name = "METHOD,…"
+    name = "METHOD,..."
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None

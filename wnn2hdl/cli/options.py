@@ -28,7 +28,7 @@ images_option = click.option("--images", type=folder, help="Read pictures from t
 masks_option = click.option("--masks", type=folder, help="Read masks: 0 is forest, another value deforested.")
 bits_option = click.option(
     "--bits",
-    metavar="R7,R6,…",
+    metavar="R7,R6,...",
     help="Read these bits.  [default: the 4 high bits each]",
 )
 share_option = click.option(

@@ -67,7 +67,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
 class CodesType(click.ParamType[tuple[int, ...]]):
     """``255`` or ``0,#ff00ff``: what stands for something in masks."""
 
-    name = "VALUE,…"
+    name = "VALUE,..."
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None

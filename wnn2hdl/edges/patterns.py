@@ -59,7 +59,9 @@ def from_file(path: Path) -> EdgeFilter:
     listed = data.get("patterns") if isinstance(data, dict) else data
     if not isinstance(listed, list) or not listed:
         raise InputError(
-            "the file holds no list of edge patterns", value=path, hint="write a JSON list such as [56, 504]"
+            "the file does not hold a list of edge patterns",
+            value=path,
+            hint="write a JSON list such as [56, 504]",
         )
     patterns = np.zeros(WINDOW_CODES, dtype=np.bool_)
     for number, entry in enumerate(listed, start=1):

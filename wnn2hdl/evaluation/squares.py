@@ -44,7 +44,7 @@ def vote(
         seed: at least 0; its lowest 64 bits are used.
         count: number of classes.
         row: the whole picture's row where the window starts, a multiple of ``side``.
-        column: likewise its column.
+        column: its column where the window starts, a multiple of ``side``.
 
     Returns:
         uint8 ``[height, width]``.

@@ -53,7 +53,7 @@ def read(source: Source, options: ImportOptions) -> SparseWisardModel:
         origin = source.origin(
             "wisardpkg",
             version=str(data.get("version", "")),
-            bleaching=f"fixed at {bleaching} by request: another classifier than the file's"
+            bleaching=f"fixed at {bleaching} by request: not the classifier of the file"
             if options.bleach is not None
             else "as in the file",
             encoder="the file holds none: the model reads bits",

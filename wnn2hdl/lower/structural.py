@@ -147,9 +147,9 @@ def _layers(model: VotingModel) -> tuple[list[Layer], NDArray[np.integer]]:
         owners = np.repeat(np.arange(len(model.classes)), model.rams)
         return [Layer(mapping, _fires(model, model.bleaching))], owners
     raise InputError(
-        "the bleaching threshold is found anew for each sample, which is no circuit of tables",
+        "the bleaching threshold is found again for each sample, which is no circuit of tables",
         value=f"confidence {model.bleaching.confidence}",
-        hint="import the model with a fixed threshold: --bleaching",
+        hint="import the model with a fixed threshold: --bleach",
     )
 
 

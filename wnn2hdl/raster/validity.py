@@ -1,4 +1,4 @@
-"""Which pixels a file states to be no data: by nodata values, a mask of its own, and alpha."""
+"""Which pixels a file states to be no data: by nodata values, its own mask, and alpha."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,7 +28,7 @@ class Validity:
 
     Attributes:
         bands: number of bands read, without alpha.
-        mask: whether the file has a mask of its own, inside it or beside it.
+        mask: whether the file has its own mask, inside it or beside it.
         alpha: number of the band that is alpha and masks, from 1; None if there is none.
         nodata: of each band read; None if there is none. Not a number is never data.
         impossible: of each band read, whether no measurement can have that value.
@@ -61,7 +61,7 @@ class Validity:
 
     @property
     def partial(self) -> bool:
-        """Whether a pixel may be invalid by what is stated; samples that are no numbers come on top."""
+        """Whether a pixel may be invalid by what is stated; samples that are not numbers come on top."""
         return self.mask or self.alpha is not None or any(value is not None for value in self.nodata)
 
     def read(
@@ -111,7 +111,7 @@ def masking_alpha(
 ) -> int | None:
     """The band that is alpha and masks, from 1; None if there is none.
 
-    Programs mark the fourth band of any file of four as alpha unless told otherwise, so near-infrared often
+    Programs mark the fourth band of any file of four as alpha by default, so near-infrared often
     passes for it.
 
     Args:

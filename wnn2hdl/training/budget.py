@@ -54,14 +54,14 @@ def train_under_budget(
 ) -> WisardModel:
     """The most accurate classifier whose exact circuit takes at most ``luts_per_pixel`` LUTs per pixel.
 
-    Among equally accurate ones that with the fewest LUTs; it is trained on all images.
+    Among equally accurate ones it is the one with the fewest LUTs; it is trained on all images.
 
     Args:
         dataset: at least two images.
         luts_per_pixel: the budget, at least 1.
         trials: random mappings of the discriminators that are tried; 0 leaves them out.
         seed: of all that is random.
-        progress: told of each image read and each candidate measured.
+        progress: called with each image read and each candidate measured.
 
     Raises:
         InputError: the images cannot be used, or nothing fits.
@@ -97,7 +97,7 @@ def measure(
         dataset: at least two images; one is in memory at a time, and the colours of all.
         trials: random mappings that are tried.
         seed: of all that is random.
-        progress: told of each image read and each candidate measured.
+        progress: called with each image read and each candidate measured.
         luts_per_pixel: leaves out what is sure to cost more.
 
     Raises:
@@ -218,18 +218,18 @@ def train_circuit(
     model = train(chosen)
     seen = histograms[list(chosen)].sum(axis=(0, 1))
     care = care_set(seen, max(1, int(np.ceil(share * seen.sum()))))
-    # Made anew in every fold, so quickly; the table it becomes is mapped with more effort.
+    # Made again in every fold, so it must be quick; the table it becomes is mapped with more effort.
     network = map_luts(pixel_table(model, care), effort=0).network
     return circuit_model(model, network, {"care_share": share})
 
 
 def circuit_model(model: WisardModel, network: LutNetwork, training: dict[str, float]) -> WisardModel:
-    """A network made of a pixel model, as a model of its own.
+    """A network made of a pixel model, as a model.
 
     Args:
         model: a pixel model.
         network: its circuit, with the outputs of `pixel_table`.
-        training: what to note beside the model's own notes.
+        training: what to record beside the model's own records.
     """
     read = {name for lut in network.luts for name in lut.inputs} | {mux.select for mux in network.muxes}
     read |= {signal for _, signal in network.outputs}

@@ -25,7 +25,7 @@ def train_neighbourhood(
         size: rows and columns of the window, 3 or 5.
         luts_per_pixel: how many LUTs the user allows; None sets no limit.
         seed: of the windows drawn and of the search.
-        progress: told of each image read and each table chosen.
+        progress: called with each image read and each table chosen.
 
     Raises:
         InputError: an image cannot be read, is smaller than a window or labelled in part only, a class has no

@@ -79,7 +79,7 @@ def test_a_folder_that_is_no_build_is_told_before_the_first_stage(tmp_path: Path
     (tmp_path / "smallest").mkdir()
     (tmp_path / "smallest" / "notes.txt").write_text("mine")
     steps: list[str] = []
-    with pytest.raises(InputError, match=r"the output exists and is no earlier build: .*smallest"):
+    with pytest.raises(InputError, match=r"the output exists and is not an earlier build: .*smallest"):
         demo.run_demo(tmp_path, 0, lambda step, *_: steps.append(step))
     assert steps == []
     assert [path.name for path in tmp_path.iterdir()] == ["smallest"]

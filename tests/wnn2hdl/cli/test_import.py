@@ -51,7 +51,7 @@ def test_the_text_says_what_the_model_reads(run: Run, tmp_path: Path) -> None:
         (("--format", "blif"), "not a BLIF file, or a damaged one"),
         (
             ("--classes", "3"),
-            "an option says nothing about an and-inverter graph (AIGER): --classes; leave it out",
+            "an option does not apply to an and-inverter graph (AIGER): --classes; leave it out",
         ),
         (("--bleach", "0"), "0 is not in the range"),
     ],

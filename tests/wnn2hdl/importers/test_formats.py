@@ -85,7 +85,7 @@ def test_a_named_format_is_not_guessed(tmp_path: Path) -> None:
     path = tmp_path / "not.blif"
     path.write_text(NOT)
     with pytest.raises(
-        InputError, match=r"not an AIGER file, or a damaged one: .*the first line is no header"
+        InputError, match=r"not an AIGER file, or a damaged one: .*the first line is not a header"
     ):
         import_model(path, ImportOptions(), "aiger")
 
@@ -93,7 +93,7 @@ def test_a_named_format_is_not_guessed(tmp_path: Path) -> None:
 def test_an_option_of_another_format_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "not.blif"
     path.write_text(NOT)
-    with pytest.raises(InputError, match="an option says nothing about a network in BLIF: --bleach"):
+    with pytest.raises(InputError, match="an option does not apply to a network in BLIF: --bleach"):
         import_model(path, ImportOptions(bleach=2))
 
 

@@ -96,10 +96,10 @@ def test_cubes_of_many_tables_are_summed_up(report: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("after", "told"), [(0.91, "+1 points"), (1.0, "+10 points"), (0.915, "+1.5 points")]
 )
-def test_whole_points_have_no_decimal_point(report: dict[str, Any], after: float, told: str) -> None:
+def test_whole_points_have_no_decimal_point(report: dict[str, Any], after: float, reported: str) -> None:
     assert (
         figures(report | {"accuracy": 0.9}, report | {"accuracy": after})["accuracy of the circuit"].change
-        == told
+        == reported
     )
 
 

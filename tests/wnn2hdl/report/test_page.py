@@ -1,4 +1,4 @@
-"""The page of a build tells what report.json tells, and nothing else."""
+"""The page of a build says what report.json says, and nothing else."""
 
 import json
 import re
@@ -59,8 +59,8 @@ def at(report: Any, key: str) -> Any:
 
 def test_every_figure_is_the_one_at_its_path(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
     figures = Outline(build_page(report, networks)).figures
-    for key, told in figures.items():
-        assert {json.loads(value) for value, _ in told} == {at(report, key)}, key
+    for key, reported in figures.items():
+        assert {json.loads(value) for value, _ in reported} == {at(report, key)}, key
     assert {"parts.block.luts", "parts.sobel.luts", "published.0.luts", "accuracy", "care.coverage"} <= set(
         figures
     )

@@ -16,7 +16,7 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.raster import ClassWriter
 
 CLASSIFYING = "classifying windows"
-"""The step that `write_classes` tells of."""
+"""The step that `write_classes` reports."""
 
 Runner = Callable[[Task, Iterable[Window]], Generator[WindowResult, None, None]]
 """Classifies windows, in any order."""
@@ -61,7 +61,7 @@ def write_classes(
         run: classifies windows.
         output: the class raster, see `ClassWriter`; without overviews.
         palette: the colour of each class.
-        progress: told of each window.
+        progress: called with each window.
 
     Raises:
         InputError: the picture cannot be read or the raster not written.

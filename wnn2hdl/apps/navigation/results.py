@@ -31,7 +31,7 @@ class FrameFix:
 
     Attributes:
         frame: name of the frame's file.
-        truth_latitude: degrees, where the UAV was; None where nobody knows.
+        truth_latitude: degrees, where the UAV was; None if not known.
         truth_longitude: degrees, or None together with ``truth_latitude``.
         latitude: degrees, where the method puts it; None if the method has no position at all to offer
             (the frame shows nothing to match, or a filter has not started).
@@ -60,8 +60,8 @@ class MethodResult:
     """One method over all frames that were scored.
 
     The reference gives a position for every frame, so its five figures (mean, standard deviation, variance
-    and the two shares at `FAR_M`) are taken here over all frames with a position, confident or not. What the
-    confidence is worth is told by the figures of the fixes.
+    and the two shares at `FAR_M`) are taken here over all frames with a position, confident or not. The
+    figures of the fixes show what the confidence is worth.
 
     Attributes:
         name: as the tables show it, "perspective + Canny".
@@ -173,9 +173,9 @@ class SearchResult:
         nearer = [method for method in alone if method.mean_m is not None and method.mean_m < own.mean_m]
         if not nearer:
             return ""
-        told = ", ".join(f"{method.name} ({method.mean_m:.1f} m)" for method in nearer)
+        named = ", ".join(f"{method.name} ({method.mean_m:.1f} m)" for method in nearer)
         verb = "is" if len(nearer) == 1 else "are"
-        return f"On this flight {told} {verb} nearer on average than {own.name} ({own.mean_m:.1f} m)."
+        return f"On this flight {named} {verb} nearer on average than {own.name} ({own.mean_m:.1f} m)."
 
     @property
     def furthest_m(self) -> float | None:

@@ -47,7 +47,7 @@ class Recipe:
 
     Attributes:
         seed: of the whole sweep.
-        bits: as in `Trial`; likewise ``bleaching`` and ``care_minimum``.
+        bits: as in `Trial`, like ``bleaching`` and ``care_minimum``.
     """
 
     seed: int

@@ -41,6 +41,6 @@ def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Recor
             hint="run the same command again: finished trials are kept",
         ) from error
     finally:
-        # That tasks are cancelled is no news to whoever stops taking results.
+        # Whoever stops taking results knows that tasks are cancelled.
         with warnings.catch_warnings(action="ignore", category=UserWarning):
             done.close()

@@ -29,7 +29,7 @@ class Surface:
         rams: of each column.
         accuracy: float64 ``[rows, columns]``, of the classifiers on the held-out pixels.
         luts: float64 ``[rows, columns]``, per pixel.
-        valid: int64 ``[rows, columns]``, valid trials; likewise ``saturated`` and ``failed``.
+        valid: int64 ``[rows, columns]``, valid trials, as ``saturated`` and ``failed`` count theirs.
     """
 
     address_bits: tuple[int, ...]
@@ -65,7 +65,8 @@ def surface(plan: Plan, records: Iterable[Record]) -> Surface:
 def peaks(found: Surface) -> tuple[Cell, ...]:
     """Architectures that none of their eight neighbours beats in mean accuracy, the most accurate first.
 
-    One most of whose trials saturate is no peak: what is left of it is a selection of lucky mappings.
+    An architecture is not a peak if most of its trials are saturated: what is left is a selection of lucky
+    mappings.
     """
     trusted = 2 * found.valid >= found.valid + found.saturated + found.failed
     heights = np.where(trusted & (found.valid > 0), found.accuracy, -np.inf)
@@ -99,7 +100,7 @@ def pareto_front(records: Iterable[Record]) -> tuple[Record, ...]:
 def hypervolume(front: Sequence[Record], luts: int) -> float:
     """The area that a front dominates, accuracy times log2(1 + LUTs), up to the number ``luts``.
 
-    Accuracy counts from 0.5, a coin's toss, so that the area tells fronts apart.
+    Accuracy counts from 0.5, a coin's toss, so that the area distinguishes fronts.
     """
     inside = [record for record in front if record.luts is not None and record.luts <= luts]
     edges = [math.log2(1 + (record.luts or 0)) for record in inside] + [math.log2(1 + luts)]

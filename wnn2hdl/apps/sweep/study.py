@@ -93,7 +93,7 @@ def run_sweep(
     finalist_trials: int = FINALIST_TRIALS,
     search: bool = False,
 ) -> Outcome:
-    """Run what is missing of a sweep and write its tables and its summary.
+    """Run the missing part of a sweep and write its tables and its summary.
 
     A folder belongs to one choice of pixels, seed and recipe; the ranges of address bits, RAMs and trials may
     grow, and what is there is used again.
@@ -103,7 +103,7 @@ def run_sweep(
         plan: the grid.
         folder: made if it does not exist.
         run: where trials run.
-        progress: told of trials that get done.
+        progress: called with the trials that are done.
         finalist_trials: of each finalist.
         search: also search beyond the grid, with as many trials.
 
@@ -241,9 +241,9 @@ def _check_identity(sets: PixelSets, recipe: Recipe, path: Path) -> None:
     different = _differences(identity, path)
     if different:
         raise InputError(
-            f"the folder holds a sweep with another {' and '.join(different)}",
+            f"the folder holds a sweep with a different {' and '.join(different)}",
             value=path.parent,
-            hint="choose another folder, or the same images and options to go on",
+            hint="choose another folder, or give the same images and options to continue",
         )
     if not path.exists():
         write_json(path, identity)

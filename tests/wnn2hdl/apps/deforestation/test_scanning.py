@@ -147,7 +147,7 @@ def test_clouds_are_left_out(
     assert summary["classified_pixels"] == found[75:].size
     write_png(tmp_path / "clouds.png", np.ones_like(clouds))
     summary = scan(picture_file, tmp_path / "out", options=options)
-    assert summary["warnings"] == ["no pixel is valid: nothing was classified"]
+    assert summary["warnings"] == ["no pixel is valid, so nothing was classified"]
     assert summary["deforested"]["share"] is None
 
 
@@ -338,15 +338,15 @@ def test_a_folder_is_one_step_that_never_falls_back(model_file: Path, tmp_path: 
     (tmp_path / "chips").mkdir()
     for name, height in (("a", 40), ("b", 9000), ("c", 40)):
         write_png(tmp_path / "chips" / f"{name}.png", np.zeros((height, 900, 3), dtype=np.uint8))
-    told: list[tuple[str, int, int]] = []
+    reported: list[tuple[str, int, int]] = []
     run = partial(run_locally, 1)
-    scanner = Scanner.open(model_file, ScanOptions(), run, lambda *step: told.append(step))
+    scanner = Scanner.open(model_file, ScanOptions(), run, lambda *step: reported.append(step))
     scanner.scan(tmp_path / "chips", tmp_path / "out")
-    assert {step for step, _, _ in told} == {"scanning pictures"}
-    done = [share for _, share, _ in told]
+    assert {step for step, _, _ in reported} == {"scanning pictures"}
+    done = [share for _, share, _ in reported]
     assert done == sorted(done)
-    assert {total for _, _, total in told} == {done[-1]}
-    assert any(1000 < share < 2000 for share in done), "a large picture's windows are told of"
+    assert {total for _, _, total in reported} == {done[-1]}
+    assert any(1000 < share < 2000 for share in done), "a large picture's windows are reported"
 
 
 def test_a_damaged_picture_does_not_keep_others_of_a_folder_from_being_scanned(
@@ -389,7 +389,7 @@ def test_dates_that_are_calibrated_otherwise_are_refused_or_scaled_each_by_itsel
 ) -> None:
     before = levels(tmp_path / "before.tif", pixels, 0, 1.0, 0.0)
     after = levels(tmp_path / "after.tif", pixels, 1000, 1.0, -0.1)
-    with pytest.raises(InputError, match=r"offset 0, .* offset -0\.1, .*say --scale .* --before-scale"):
+    with pytest.raises(InputError, match=r"offset 0, .* offset -0\.1, .*give --scale .* --before-scale"):
         scan(after, tmp_path / "out", options=ScanOptions(Reading(scale=(0, 3072))), before=before)
     assert not (tmp_path / "out").exists()
     options = ScanOptions(Reading(scale=(1000, 4072)))

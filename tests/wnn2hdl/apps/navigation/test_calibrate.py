@@ -142,7 +142,7 @@ def test_a_frame_has_the_camera_of_its_stretch_or_of_either_beside_it() -> None:
     assert found.cameras_at("IMG_100.jpg") == (late,)
     assert found.cameras_at("IMG_101.jpg") == (late,)
     for name in ("DJI_013.jpg", "last.jpg"):
-        assert found.cameras_at(name) == (early, late), "where it lies is not told"
+        assert found.cameras_at(name) == (early, late), "where it lies is not known"
 
 
 def test_a_frame_of_the_calibration_has_its_own_camera_whatever_its_name() -> None:

@@ -62,7 +62,7 @@ def test_another_camera_window_or_method_is_refused(learned: Learned) -> None:
     with pytest.raises(InputError, match=r"--window was 40\.0, and now is 95\.0"):
         learned.require(learned.conditions, {"window": 95.0}, METHODS)
     known = replace(learned, windows={"map": None})
-    with pytest.raises(InputError, match="no thresholds for such a search: window"):
+    with pytest.raises(InputError, match="no thresholds for this search: window"):
         known.require(learned.conditions, {"window": 40.0}, METHODS)
     some = {place: one for place, one in learned.acceptances.items() if place[1] != "grey"}
     with pytest.raises(InputError, match="no threshold for a method: grey"):

@@ -137,7 +137,7 @@ def test_of_those_not_shown_to_differ_the_smallest_is_chosen() -> None:
     decision = decide(collect(records))
     assert decision is not None
     assert decision.chosen.cell == (5, 10)
-    assert "not shown to differ" in decision.reasons
+    assert "Not shown to differ" in decision.reasons
 
 
 def test_the_best_trial_is_the_most_accurate_then_the_smallest() -> None:

@@ -142,7 +142,7 @@ def test_a_wider_grid_goes_on_in_the_same_folder(sets: PixelSets, plan: Plan, tm
 def test_a_folder_of_another_sweep_is_refused(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
     swept(sets, plan, tmp_path)
     other = replace(plan, recipe=replace(plan.recipe, seed=6))
-    with pytest.raises(InputError, match="the folder holds a sweep with another recipe"):
+    with pytest.raises(InputError, match="the folder holds a sweep with a different recipe"):
         swept(sets, other, tmp_path)
 
 

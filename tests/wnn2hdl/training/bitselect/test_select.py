@@ -70,7 +70,7 @@ def test_a_single_image_is_enough(scenes: list[Colours]) -> None:
 
 
 def test_more_than_two_classes_are_refused(scenes: list[Colours]) -> None:
-    with pytest.raises(InputError, match=r"tells two classes apart: forest, river, road; train discrim"):
+    with pytest.raises(InputError, match=r"separates two classes: forest, river, road; train discrim"):
         select_bits(scenes, ("forest", "river", "road"), luts=1, seed=0)
 
 

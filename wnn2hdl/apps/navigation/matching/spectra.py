@@ -38,7 +38,7 @@ class Layers:
     def shrink(self, factor: int) -> "Layers":
         """The means over squares of ``factor`` pixels, padded with pixels that do not count.
 
-        Squares are averaged, not squared anew, so that scores of shrunk pictures estimate those of the full
+        Squares are averaged, not squared again, so that scores of shrunk pictures estimate those of the full
         ones: what they miss is the part finer than a square.
         """
         value = _shrink(self.value, factor)
