@@ -100,7 +100,9 @@ def evaluate_tagged(
     for name in reported(cleared, "classifying chips", len(cleared), progress):
         if name not in files:
             raise InputError(
-                f"there is no picture of this name in {chips}", value=name, hint="correct the file of tags"
+                f"there is no picture of this name in {chips}",
+                value=name,
+                hint="correct the file of tags",
             )
         picture = read_picture(files[name], reading)
         answers = classifier.classify(with_halo(picture.pixels, classifier.halo))

@@ -169,7 +169,7 @@ class WisardModel:
         if mapping.shape[1:] != shape:
             raise ValueError(f"the mapping has shape {mapping.shape}; rams and address_bits say {shape}")
         if len(data["counts"]) != len(data["classes"]) or any(len(d) != shape[0] for d in data["counts"]):
-            raise ValueError("counts must hold a list a class with an entry a RAM")
+            raise ValueError("counts must hold one list per class with one entry per RAM")
         # A RAM takes a few bytes in the file, however many addresses it has.
         check_size(len(data["classes"]), *shape)
         counts = np.stack([[_dense(ram, shape[1]) for ram in rams] for rams in data["counts"]])

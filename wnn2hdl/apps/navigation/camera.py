@@ -165,7 +165,7 @@ class Camera:
         except OSError as error:
             raise InputError("cannot read the camera", value=f"{path} ({error.strerror})") from error
         except (ValueError, RecursionError) as error:
-            raise InputError("the camera is no TOML", value=f"{path} ({error})", hint=_FORM) from error
+            raise InputError("the camera is not TOML", value=f"{path} ({error})", hint=_FORM) from error
         if not isinstance(table, dict):
             raise InputError("no camera in the file", value=path, hint=_FORM)
         camera = cls.of_table(table, path)
