@@ -1,9 +1,9 @@
-"""Accuracy on unseen images against LUTs a pixel, of several classifiers, in one table.
+"""Accuracy on unseen images against LUTs per pixel, of several classifiers, in one table.
 
     python benchmarks/accuracy.py IMAGES MASKS [--mappings 20] [--seed 0]
 
 Five-fold cross-validation by image over a folder of pictures and one of masks. LUTs are those of the
-classifier trained on all images, as mapped; logistic regression is no circuit here and has none. The last
+classifier trained on all images, as mapped; logistic regression is not a circuit here and has none. The last
 rows look at a pixel's neighbours, too.
 """
 
@@ -97,7 +97,7 @@ def neighbourhood(dataset: Dataset, size: int, seed: int) -> tuple[float, int]:
     """
 
     def train(images: Dataset) -> WisardModel:
-        return train_neighbourhood(images, size, max_luts=None, seed=seed, progress=silent)
+        return train_neighbourhood(images, size, luts_per_pixel=None, seed=seed, progress=silent)
 
     right = pixels = 0
     for training, test in folds(dataset.names, FOLDS):

@@ -123,7 +123,7 @@ def ending(read: Callable[[], object]) -> tuple[str, str]:
     except Wnn2hdlError as error:
         line = error.line()
         if len(line) > LONGEST_LINE or not line.isprintable():
-            return "a line that nobody can read", line[:300]
+            return "an unreadable line", line[:300]
         return "refused", line
     except OSError as error:
         return "refused", str(error)  # the command line says it on one line

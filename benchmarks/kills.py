@@ -31,10 +31,10 @@ PLACE = "{out}"
 WNN2HDL = (sys.executable, "-c", "import sys; from wnn2hdl.cli import main; sys.exit(main())")
 
 COMMANDS: Mapping[str, Sequence[str]] = {
-    "samples": ("samples", "--images", "8", "-o", PLACE),
+    "samples": ("samples", "--count", "8", "-o", PLACE),
     "train": ("train", "-o", f"{PLACE}/model.json"),
     "compile": ("compile", "{given}/model.json", "--target", "pixel", "-o", f"{PLACE}/build"),
-    "sweep": ("sweep", "--n", "2..3", "--k", "2..5", "--trials", "4", "-o", PLACE),
+    "sweep": ("sweep", "--address-bits", "2..3", "--rams", "2..5", "--trials", "4", "-o", PLACE),
     "scan": ("scan", "{given}/model.json", "{given}/scene/images", "--square", "5", "-o", PLACE),
     "locate": ("locate", "-o", PLACE),
     "demo": ("demo", "-o", PLACE),
@@ -44,7 +44,8 @@ COMMANDS: Mapping[str, Sequence[str]] = {
 POLL_SECONDS = 0.005
 
 ATTEMPTS = 3
-"""So many times as often as it is to be killed a command is started: on a busy machine it may end before."""
+"""How many times as often as it has to be killed a command is started: on a busy machine it may end
+before."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,7 @@ def _start(command: Sequence[str], place: Path) -> "subprocess.Popen[bytes]":
 def _embedded(names: Sequence[str], given: Path) -> dict[str, list[str]]:
     """The long commands in full, and what they need."""
     subprocess.run([*WNN2HDL, "train", "-o", str(given / "model.json")], check=True, capture_output=True)
-    samples = ["samples", "--images", "3", "--side", "700", "-o", str(given / "scene")]
+    samples = ["samples", "--count", "3", "--side", "700", "-o", str(given / "scene")]
     subprocess.run([*WNN2HDL, *samples], check=True, capture_output=True)
     return {
         name: [*WNN2HDL, *(word.replace("{given}", str(given)) for word in COMMANDS[name])] for name in names

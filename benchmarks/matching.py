@@ -112,7 +112,7 @@ def whole_map(whole: Bits) -> None:
 
 
 def windows(whole: Bits) -> None:
-    """Frames a second in windows of 599 x 599."""
+    """Frames per second in windows of 599 x 599."""
     rng = np.random.default_rng(2)
     index = MapIndex(whole)
     mask = np.ones((FRAME, FRAME), dtype=np.bool_)
@@ -125,7 +125,7 @@ def windows(whole: Bits) -> None:
             for frame, (row, col) in zip(frames, places, strict=True)
         ]
         rate = SEQUENCE / (time.process_time() - started)
-        line = f"window, {score}: {rate:.0f} frames a second"
+        line = f"window, {score}: {rate:.0f} frames per second"
         if score in RIVALS:
             started = time.process_time()
             theirs = []

@@ -5,8 +5,8 @@
 PAPER holds `earthimage.jpg`, the authors' overlay `10_ram_4_bits.jpg`, and their training chips (`chips`,
 `regions.csv`). Ours is what the overlay's name says: 10 RAMs of 4 address bits, trained on those chips, the
 best of some random mappings; best by the area under the ROC curve on other chips with tags, so that neither
-the view nor the overlay has a say. What is evidently tree or open ground is told by a threshold that a look
-at the view confirms; the authors' obvious mistakes are the squares where their map contradicts it.
+the view nor the overlay has a say. What is evidently tree or open ground is decided by a threshold that a
+look at the view confirms; the authors' obvious mistakes are the squares where their map contradicts it.
 """
 
 import argparse

@@ -79,10 +79,10 @@ def simulators_speed(design: Design, files: Files) -> None:
         _, seconds = run_compiled(claim, design.module(claim.part), files.simulated, windows, simulator)
         whole = time.perf_counter() - started
         print(
-            f"  {simulator}: {WINDOWS / seconds:.0f} windows a second, {WINDOWS / whole:.0f} with compiling"
+            f"  {simulator}: {WINDOWS / seconds:.0f} windows per second, {WINDOWS / whole:.0f} with compiling"
         )
     result = simulate(component(design.circuit, style=design.style), windows, claim.answers(windows))
-    print(f"  amaranth: {result.vectors_per_second:.0f} windows a second")
+    print(f"  amaranth: {result.vectors_per_second:.0f} windows per second")
 
 
 def _module(text: str, name: str) -> str:

@@ -1,9 +1,9 @@
 """Speed and memory of a scan: ``python benchmarks/scan.py`` and ``python benchmarks/scan.py --gigapixel``.
 
-Prints megapixels a second of the embedded landscapes on one core and on all: ours, a plain look-up with NumPy
-over the whole picture, and scikit-learn's logistic regression and random forest, trained on the same pixels;
-in memory (an array to classes), and end to end (a GeoTIFF to a compressed GeoTIFF of classes, without
-polygons). Ours also tells the share of colours that the model knows, which the others do not. End to end,
+Prints megapixels per second of the embedded landscapes on one core and on all: ours, a plain look-up with
+NumPy over the whole picture, and scikit-learn's logistic regression and random forest, trained on the same
+pixels; in memory (an array to classes), and end to end (a GeoTIFF to a compressed GeoTIFF of classes, without
+polygons). Ours also reports the share of colours that the model knows, which the others do not. End to end,
 ours is the `wnn2hdl scan` command with everything it writes but polygons.
 
 ``--gigapixel`` makes a GeoTIFF of 31,744 x 31,744 pixels in a temporary folder and scans it with the command,
@@ -60,7 +60,7 @@ def tiles() -> list[NDArray[np.uint8]]:
 
 
 def write_scene(path: Path, side: int, pictures: list[NDArray[np.uint8]]) -> None:
-    """A GeoTIFF of so many pixels squared: tiled, compressed, 10 m a pixel in UTM."""
+    """A GeoTIFF of ``side`` pixels squared: tiled, compressed, 10 m per pixel in UTM."""
     options = {"driver": "GTiff", "count": 3, "height": side, "width": side, "dtype": "uint8"}
     layout = {
         "tiled": True,
@@ -96,7 +96,7 @@ def rivals() -> tuple[PixelTable, dict[str, Answer]]:
     forest = RandomForestClassifier(TREES, random_state=0, n_jobs=-1)
     for estimator in (logistic, forest):
         estimator.fit(pixels[chosen], labels[chosen])
-    # In strips, since its squares of colours take 80 bytes a pixel.
+    # In strips, since its squares of colours take 80 bytes per pixel.
     answers: dict[str, Answer] = {
         "NumPy look-up": ours.classify,
         "logistic regression": lambda picture: np.concatenate(
@@ -136,12 +136,14 @@ def in_memory(cores: int) -> None:
     for label, method in (("ours, pixels", Method()), ("ours, squares of 20", Method(square=20))):
         for jobs in sorted({1, cores}):
             seconds = best(lambda m=method, j=jobs: scan_in_memory(ours, picture, m, j))  # type: ignore[misc]
-            print(f"in memory: {label}, {jobs} threads: {size / seconds:.1f} megapixels a second", flush=True)
+            print(
+                f"in memory: {label}, {jobs} threads: {size / seconds:.1f} megapixels per second", flush=True
+            )
     for name, answer in answers.items():
         part = picture[:FOREST_SIDE, :FOREST_SIDE] if "forest" in name else picture
         seconds = best(lambda a=answer, p=part: a(p))  # type: ignore[misc]
         speed = part.shape[0] * part.shape[1] / 1e6 / seconds
-        print(f"in memory: {name}: {speed:.2f} megapixels a second", flush=True)
+        print(f"in memory: {name}: {speed:.2f} megapixels per second", flush=True)
 
 
 def plain_scan(name: str, source: Path, output: Path) -> None:
@@ -159,7 +161,7 @@ def plain_scan(name: str, source: Path, output: Path) -> None:
 
 
 def run(command: list[str], cores: int) -> tuple[str, float, str]:
-    """Standard output and seconds of a child process on so many cores, and what it took of the machine.
+    """Standard output and seconds of a child process on this many cores, and what it took of the machine.
 
     Seconds of the processor tell the speed even where other programs were running.
     """
@@ -225,7 +227,8 @@ def end_to_end(folder: Path, cores: int) -> None:
             rival = [sys.executable, __file__, "--rival", name, str(scene), str(folder / "rival.tif")]
             speed, _, taken = run(rival, count)
             print(
-                f"end to end: {name}, {count} cores: {speed.strip()} megapixels a second, without the start; "
+                f"end to end: {name}, {count} cores: {speed.strip()} megapixels per second, "
+                f"without the start; "
                 f"{taken}, training included",
                 flush=True,
             )

@@ -1,6 +1,6 @@
 """Run random commands for an hour, disturb them, and look at what they leave.
 
-``python -m benchmarks.soak --minutes 15`` works in a folder of its own. Commands run undisturbed, are killed,
+``python -m benchmarks.soak --minutes 15`` works in its own folder. Commands run undisturbed, are killed,
 interrupted or terminated at a random moment, run twice at once into one place, or get a damaged file. After
 each of them, what lies in the folder has to be whole or absent, no process may be left, and only a killed
 command may leave something hidden, which the next one at the same place removes. Now and then a finished
@@ -188,7 +188,7 @@ class Soak:
     def _note(self, name: str, how: str, status: int, text: str, expected: set[int]) -> None:
         self.ends[name, how, str(status)] += 1
         last = text.strip().splitlines()[-1:] or [""]
-        # Before a command is there to catch it, Python tells of an interrupt in its own way.
+        # Before a command is there to catch it, Python reports an interrupt in its own way.
         early = how == "SIGINT" and last == ["KeyboardInterrupt"]
         if status not in expected and not early:
             self._fault(name, how, f"status {status}: {last[0][:300]}")

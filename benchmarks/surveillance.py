@@ -2,8 +2,9 @@
 
     python benchmarks/surveillance.py IMAGES MASKS [--seed 0] [--mappings 5] [--pixels 5000]
 
-Five folds by image. Every classifier of single pixels is trained on the same pixels: so many of each training
-image, drawn at random; those of neighbourhoods draw their own windows. Squares are those of the reference
+Five folds by image. Every classifier of single pixels is trained on the same pixels: equally many of each
+training image, drawn at random; those of neighbourhoods draw their own windows. Squares are those of the
+reference
 design: 20 x 20, half of the pixels vote; they are scored against the majority of each square of the mask, and
 against its pixels.
 """
@@ -100,7 +101,7 @@ def rivals(pixels: int, mappings: int, seed: int) -> dict[str, list[Trainer]]:
 
     def neighbourhood(size: int) -> Trainer:
         return lambda dataset: model_classifier(
-            train_neighbourhood(dataset, size, max_luts=None, seed=seed, progress=silent)
+            train_neighbourhood(dataset, size, luts_per_pixel=None, seed=seed, progress=silent)
         )
 
     single: dict[str, list[Trainer]] = {
@@ -110,11 +111,11 @@ def rivals(pixels: int, mappings: int, seed: int) -> dict[str, list[Trainer]]:
         f"WiSARD n = 4, k = 16, mean of {mappings} mappings": [
             discriminators(seed + i) for i in range(mappings)
         ],
-        "bit selection, 1 LUT a pixel": [under_budget(1)],
-        "bit selection, 2 LUTs a pixel": [under_budget(2)],
+        "bit selection, 1 LUT per pixel": [under_budget(1)],
+        "bit selection, 2 LUTs per pixel": [under_budget(2)],
     }
     whole: dict[str, list[Trainer]] = {
-        f"{size}x{size} neighbourhood, {LUTS} LUTs a pixel": [neighbourhood(size)] for size in (3, 5)
+        f"{size}x{size} neighbourhood, {LUTS} LUTs per pixel": [neighbourhood(size)] for size in (3, 5)
     }
     return {name: [on_pixels(trainer) for trainer in trainers] for name, trainers in single.items()} | whole
 

@@ -6,7 +6,7 @@ how long that takes. Synthesis and sweep use the same number of cores, and nothi
 
 Three designs of each sampled trial are synthesised: the circuit that the sweep mapped, as `compile` writes it
 in its two styles, vendor's cells and equations; and the trial's table as a `case` statement with x for
-don't-cares, which is what a sweep without a mapper of its own would synthesise, and whose time is compared.
+don't-cares, which is what a sweep without its own mapper would synthesise, and whose time is compared.
 Without images the embedded landscapes are swept.
 """
 
@@ -141,7 +141,7 @@ def main() -> None:
     rival, rival_seconds = synthesised([as_case(table) for table, _ in pairs])
     agreement("the table as a case statement", ours, rival)
     rival_each = rival_seconds / len(pairs)
-    print(f"synth_xilinx: {rival_each:.2f} s a trial on the same cores; ratio {rival_each / each:.0f}")
+    print(f"synth_xilinx: {rival_each:.2f} s per trial on the same cores; ratio {rival_each / each:.0f}")
 
 
 if __name__ == "__main__":

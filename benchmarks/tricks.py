@@ -1,6 +1,6 @@
 """What somebody who wants to deceive can do to a build: ``python benchmarks/tricks.py build/NAME …``.
 
-Each trick changes a copy of a build and writes the manifest's hashes anew. `wnn2hdl verify` has to refuse
+Each trick changes a copy of a build and writes the manifest's hashes again. `wnn2hdl verify` has to refuse
 every copy in which a simulator or Vivado would read another circuit than the one that is proved, or in which
 a file states what is not so. A few tricks do no harm; they say why, and have to pass.
 
@@ -481,7 +481,7 @@ DESIGN = (
     *(Trick(f"the input {name!r}", _renamed_input(name)) for name in (_INJECTION, "wire", "R7[0]", "R7 ")),
     *(Trick(f"the node {name!r}", _renamed_node(name)) for name in (_INJECTION, "end", "a b", "$and")),
     Trick("the output port of another name", circuit(_renamed_port)),
-    Trick("contents that are no number", in_network(lambda data: data["cells"][0].update(init="1'h0"))),
+    Trick("contents that are not a number", in_network(lambda data: data["cells"][0].update(init="1'h0"))),
     Trick(
         "contents that are too wide", in_network(lambda data: data["cells"][0].update(init="1" + "0" * 99))
     ),

@@ -46,7 +46,7 @@ def pixels_and_labels() -> Case:
 
 
 def rate(job: Callable[[], object], pixels: int, runs: int = 3) -> float:
-    """Pixels a second of the fastest run."""
+    """Pixels per second of the fastest run."""
     seconds = []
     for _ in range(runs):
         start = time.perf_counter()
@@ -101,7 +101,7 @@ def main() -> None:
     if importlib.util.find_spec("wisardpkg"):
         rates["wisardpkg, Wisard"] = wisardpkg(bits[:RIVAL_PIXELS], labels[:RIVAL_PIXELS])
     ours = rates["wnn2hdl, RGB pixels"]
-    print(f"{'million pixels a second':28}{'train':>10}{'predict':>10}{'ours is faster by':>24}")
+    print(f"{'million pixels per second':28}{'train':>10}{'predict':>10}{'ours is faster by':>24}")
     for name, (training, prediction) in rates.items():
         ratio = f"{ours[0] / training:12.1f} {ours[1] / prediction:11.1f}"
         print(f"{name:28}{training / 1e6:10.3f}{prediction / 1e6:10.3f}{ratio}")

@@ -37,7 +37,7 @@ def main(folder: Path) -> None:
     table = pixel_table(model, care=histogram.sum(axis=0) > 0)
     cover, network = espresso(table).cover, map_luts(table).network
     print(f"{table.care.sum()} of {len(table.care)} codes occur")
-    print(f"{len(cover.cubes)} cubes, {len(network.cells)} cells a pixel")
+    print(f"{len(cover.cubes)} cubes, {len(network.cells)} cells per pixel")
 
     # A build folder: Verilog, testbench, proof, counts.
     build = compile_model(model, folder, CompileOptions(target="pixel"), lambda *_: None)

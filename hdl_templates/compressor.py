@@ -88,8 +88,8 @@ class MatchCompressor(Part):
 def add_columns(m: Module, columns: Columns, width: int, *, name: str, platform: object) -> list[Value]:
     """Add up columns of bits with compressors, placed as submodules of ``m``.
 
-    Columns are worked off from the least significant one, each with the compressor that takes away most bits
-    for a LUT: 6:3 and (5, 1):3 take one bit a LUT, smaller ones less.
+    Columns are worked off from the least significant one, each with the compressor that removes most bits
+    per LUT: 6:3 and (5, 1):3 remove one bit per LUT, smaller ones less.
 
     Args:
         m: the module under construction.

@@ -1,4 +1,4 @@
-"""Parts inside parts: submodules in simulation, instances of modules of their own in emitted Verilog."""
+"""Parts inside parts: submodules in simulation, instances of their own modules in emitted Verilog."""
 
 from dataclasses import dataclass, field
 
@@ -7,7 +7,7 @@ from amaranth.lib import wiring
 
 
 class Part(wiring.Component):
-    """A component that becomes a Verilog module of its own.
+    """A component that becomes its own Verilog module.
 
     Attributes:
         module_name: name of that module; components of one name must be equal.

@@ -8,7 +8,7 @@ from hdl_templates.hierarchy import Emission
 
 
 def named(m: Module, name: str, value: Value, platform: object) -> Value:
-    """A value under a name of its own, so that emitted equations read ``R7`` and not ``rgb[23]``.
+    """A value under its own name, so that emitted equations read ``R7`` and not ``rgb[23]``.
 
     Without an `Emission` it stays as it is: each signal costs Amaranth's simulator another round.
     """
@@ -20,6 +20,6 @@ def named(m: Module, name: str, value: Value, platform: object) -> Value:
 
 
 def tie_off(m: Module, bits: Sequence[Value], platform: object) -> None:
-    """Gather bits of ports that nothing reads in a signal ``unused``: linters then know it is meant so."""
+    """Gather bits of ports that nothing reads in a signal ``unused``, which linters take as intended."""
     if bits:
         named(m, "unused", Cat(*bits).any(), platform)

@@ -26,7 +26,7 @@ def pack(
     Args:
         component: the component.
         inputs: for each input port its values, bool ``[vectors, width]``, the least significant bit first.
-        outputs: likewise for each output port.
+        outputs: for each output port its values, in the same form.
 
     Raises:
         ValueError: ports are missing or unknown, or arrays have other widths or differ in length.

@@ -16,7 +16,7 @@ from wnn2hdl.verify.specification import Claim, Samples, word_values
 
 SimulatorName = Literal["icarus", "verilator"]
 
-# Verilator 5.49 defines this macro, with which cocotb 2.1's main loop waits for ever: it advances a clock
+# Verilator 5.49 defines this macro, with which cocotb 2.1's main loop waits forever: it advances a clock
 # that is then not the one being read.
 _VERILATOR_ARGUMENTS = ["-CFLAGS", "-UVL_TIME_CONTEXT"]
 

@@ -43,7 +43,7 @@ def cluster(tmp_path: Path) -> Iterator[Any]:
 
 @pytest.fixture(scope="session")
 def write_build() -> Callable[..., Path]:
-    """``write_build(folder, **changes)`` writes a build that nobody synthesised: its figures are made up.
+    """``write_build(folder, **changes)`` writes a build that was not synthesised: its figures are made up.
 
     Model, design and networks are real; changes are those of the fields of `BuildReport`.
     """

@@ -28,7 +28,8 @@ def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
         style: how its LUT networks are written.
 
     Raises:
-        ValueError: words of different latencies meet; or, when it is elaborated, a table is no LUT network.
+        ValueError: words of different latencies meet; or, when it is elaborated, a table is not a LUT
+            network.
     """
     return CircuitComponent(circuit=circuit, style=style)
 

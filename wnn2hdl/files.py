@@ -1,4 +1,4 @@
-"""Reading and writing the project's JSON: whole files or nothing."""
+"""Reading and writing the project's JSON: files are written whole or not at all."""
 
 import errno
 import hashlib
@@ -38,7 +38,8 @@ def write_text(path: Path, text: str) -> None:
 
     Raises:
         InputError: the folder does not exist or cannot be written, it has no room, or a folder has the
-            file's name; or the text is none: what came from a name that is no UTF-8 cannot be written.
+            file's name; or the text cannot be encoded: what came from a name that is not UTF-8 cannot be
+            written.
     """
     write_bytes(path, _encoded(text, path))
 
@@ -67,7 +68,9 @@ def _encoded(text: str, path: Path) -> bytes:
     except UnicodeEncodeError as error:
         wrong = ascii(error.object[error.start : error.end])
         raise InputError(
-            "cannot write this as UTF-8", value=f"{wrong} in {path}", hint="rename what has it in its name"
+            "cannot write this as UTF-8",
+            value=f"{wrong} in {path}",
+            hint="rename the file or folder with this name",
         ) from error
 
 
@@ -103,7 +106,7 @@ def _unwritable(path: Path, error: OSError) -> InputError:
 
 
 def require_file(path: Path, what: str) -> None:
-    """Refuse what is no regular file before it is opened: opening a pipe or a device may never return.
+    """Refuse what is not a regular file before it is opened: opening a pipe or a device may never return.
 
     Args:
         path: to be read.
@@ -146,9 +149,9 @@ def make_folder(path: Path) -> None:
 def output_folder(path: Path, what: str) -> Iterator[None]:
     """A folder that no other process writes into meanwhile; it is made if it is missing.
 
-    The system drops the lock of a process that ends, however it ends, so that no lock outlives its process;
-    what a killed one left under a hidden name, here or one folder below, is removed. A folder that is new
-    goes again if the block fails and leaves nothing in it.
+    The system releases the lock of a process that ends, however it ends, so that no lock outlives its
+    process; what a killed one left under a hidden name, here or one folder below, is removed. A folder that
+    is new goes again if the block fails and leaves nothing in it.
 
     Args:
         path: the folder.
@@ -295,5 +298,5 @@ def _finite(text: str) -> float:
     # Python reads NaN and Infinity, which JSON does not know, and takes 1e999 for infinity.
     number = float(text)
     if not math.isfinite(number):
-        raise ValueError(f"{text} is no finite number")
+        raise ValueError(f"{text} is not a finite number")
     return number

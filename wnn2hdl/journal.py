@@ -15,10 +15,10 @@ class Journal:
 
     The file's first line is the identity as JSON. A record follows another: a line with the CRC-32 of its
     content in hexadecimal and its length in bytes, the content, and the end of a line. What a killed process
-    left half-written at the end is no record, nor is anything after a damaged one. A file of another
+    left half-written at the end is not a record, nor is anything after a damaged one. A file of another
     identity holds no records.
 
-    Opening reads, and changes nothing; the first `append` makes the file and cuts off what is not sound. So
+    Opening only reads; the first `append` makes the file and cuts off what is not sound. So
     any process may read, and the one that holds the folder (`wnn2hdl.files.output_folder`) may append.
 
     Args:

@@ -94,7 +94,7 @@ def test_every_bit_tells_samples_apart(features: NDArray[np.float64], bits: int)
     [
         ([[0.0], [float("nan")]], 2, "a feature is not finite"),
         ([[0.0], [float("inf")]], 2, "a feature is not finite"),
-        ([[0.0], [1.0]], 0, "no such number of bits a feature: 0; choose at least 1"),
+        ([[0.0], [1.0]], 0, "a feature cannot have this number of bits: 0; choose at least 1"),
         ([], 2, "features must be a filled array"),
         ([1.0, 2.0], 2, "features must be a filled array"),
     ],

@@ -107,9 +107,9 @@ def test_make_folder_makes_parents_and_minds_files(tmp_path: Path) -> None:
         (b"\xff\xfe\x00", "not a model, or a damaged one"),
         (b"[" * 100_000, "not a model, or a damaged one"),
         (b"[1, 2]", r"not a model: .* \(holds a JSON list\)"),
-        (b'{"a": NaN}', r"a damaged one: .* \(NaN is no finite number\)"),
-        (b'{"a": [-Infinity]}', r"a damaged one: .* \(-Infinity is no finite number\)"),
-        (b'{"a": 1e999}', r"a damaged one: .* \(1e999 is no finite number\)"),
+        (b'{"a": NaN}', r"a damaged one: .* \(NaN is not a finite number\)"),
+        (b'{"a": [-Infinity]}', r"a damaged one: .* \(-Infinity is not a finite number\)"),
+        (b'{"a": 1e999}', r"a damaged one: .* \(1e999 is not a finite number\)"),
         (b'{"a": "\\ud800"}', r"a damaged one: .*surrogates not allowed"),
     ],
 )

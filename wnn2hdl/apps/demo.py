@@ -48,7 +48,7 @@ SCENE_SIDE, SCENE_SEED = 768, 2000
 ADDRESS_BITS, RAMS, TRIALS, FINALIST_TRIALS, SWEEP_PIXELS = (2, 3, 4, 5), (4, 8, 12, 16), 5, 20, 5_000
 """A sweep of seconds; the reference design's had n = 2…12, k = 2…20, ten trials, and 100 of a finalist."""
 
-MAX_LUTS = 2
+LUTS_PER_PIXEL = 2
 
 CALIBRATION_FRAMES = 5
 WINDOW_M = 95.0
@@ -58,7 +58,7 @@ PAGE, REFERENCE_BUILD, SMALLEST_BUILD = "index.html", "reference", "smallest"
 """Names in the demo's folder."""
 
 REFERENCE = "the reference design's discriminators (n = 4, k = 16), on the colours of the training landscapes"
-SMALLEST = f"the most accurate classifier of at most {MAX_LUTS} LUTs per pixel, on every input"
+SMALLEST = f"the most accurate classifier of at most {LUTS_PER_PIXEL} LUTs per pixel, on every input"
 """What the two builds are."""
 
 
@@ -70,7 +70,7 @@ class Demo:
         page: the page to open.
         outcome: of the sweep.
         reference: the reference design's discriminators (n = 4, k = 16), in domain mode.
-        smallest: the most accurate classifier of at most `MAX_LUTS` LUTs per pixel, on every input.
+        smallest: the most accurate classifier of at most `LUTS_PER_PIXEL` LUTs per pixel, on every input.
         windows: 3x3 windows of a landscape that ran through the smallest circuit.
         scan: the summary of the mapped landscape; None without the extra ``geo``.
         flight: the located flight; None without it.
@@ -94,7 +94,7 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
         folder: gets the landscapes (``training``, ``test``), ``sweep``, the builds ``reference`` and
             ``smallest``, ``scan``, ``flight`` and the page.
         seed: of the tuple mappings.
-        progress: told of every stage.
+        progress: called with every stage.
 
     Raises:
         InputError: the folder cannot be written, or something else is where a build is to go.
@@ -112,8 +112,10 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
     options = CompileOptions(test_images=folder / "test" / IMAGES, test_masks=folder / "test" / MASKS)
     domain = replace(options, mode="domain", care=folder / "training" / IMAGES)
     reference = compile_model(model, folder / REFERENCE_BUILD, domain, progress)
-    small = train_under_budget(training, MAX_LUTS, trials=0, seed=seed, progress=progress)
-    small = _trained(small, training, folder, seed, f" --max-luts {MAX_LUTS} --trials 0", progress)
+    small = train_under_budget(training, LUTS_PER_PIXEL, trials=0, seed=seed, progress=progress)
+    small = _trained(
+        small, training, folder, seed, f" --luts-per-pixel {LUTS_PER_PIXEL} --trials 0", progress
+    )
     smallest = compile_model(small, folder / SMALLEST_BUILD, options, progress)
     picture = folder / "test" / IMAGES / f"{test.names[0]}"
     playback = play(smallest.folder, picture, "amaranth", progress)

@@ -18,7 +18,7 @@ from wnn2hdl.verify.equivalence import Circuit
 from wnn2hdl.verify.proof import METHOD, Proof, prove, prove_netlists
 
 _MANY = 1 << 16
-"""Vectors above which a circuit is simulated in a process of its own."""
+"""Vectors above which a circuit is simulated in its own process."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ def open_classifier(path: Path) -> PictureClassifier:
 
     Raises:
         ModelFileError: the file is missing, damaged or no model.
-        InputError: the folder is no build or a failed one, or the model reads no pixels.
+        InputError: the folder is not a build or a failed one, or the model reads no pixels.
     """
     if reason := failure(path):
         raise InputError(f"the build failed: {reason}", value=path, hint="compile the model again")
@@ -36,7 +36,7 @@ def circuit_classifier(design: Design) -> PixelTable:
     """The classifier that a design's circuit is, cared for or not; it knows what is in its care set."""
     care = design.care
     if care is None:
-        raise InputError("a circuit without a classifier tells no classes", value=design.target.name)
+        raise InputError("a circuit without a classifier has no classes", value=design.target.name)
     model = design.picture_model
     # Three classes take two bits, so a circuit may answer a fourth where it is free: taken for the last one.
     answers = np.minimum(circuit_answers(design), len(model.classes) - 1).astype(np.uint8)

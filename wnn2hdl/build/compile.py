@@ -80,7 +80,7 @@ def compile_model(
         model: the model.
         folder: the build folder; an earlier build there is replaced.
         options: the user's choices.
-        progress: told of every stage.
+        progress: called with every stage.
 
     Raises:
         InputError: the model or the imagery cannot be used, the test masks have other classes, or the folder

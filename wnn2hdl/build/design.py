@@ -87,7 +87,7 @@ class Design:
 
     @property
     def care(self) -> CareSet | None:
-        """The codes that the classifier is cared for on; None of a design without a classifier."""
+        """The codes that the classifier is cared for on; None for a design without a classifier."""
         if not self.target.classifies:
             return None
         sets = care_sets(self.circuit)
@@ -194,7 +194,7 @@ class Design:
             raise ValueError(f"nothing is known about the circuit {self.circuit.name}")
         for name, part in self.parts.items():
             require_unreserved(self.module(name))
-            # A circuit without a claim of its own is proved as a part of one that has one.
+            # A circuit without its own claim is proved as a part of one that has one.
             if name in claims and part.widths != (claims[name].inputs, claims[name].outputs):
                 raise ValueError(f"{name} has the ports {part.widths}")
             if part.latency:

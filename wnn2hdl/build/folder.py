@@ -75,12 +75,12 @@ def require_replaceable(target: Path) -> None:
     """Raise InputError if something other than a build or an empty folder is where a build is to go."""
     if target.exists() and not (target.is_dir() and (is_build(target) or not any(target.iterdir()))):
         raise InputError(
-            "the output exists and is no earlier build", value=target, hint="choose another folder"
+            "the output exists and is not an earlier build", value=target, hint="choose another folder"
         )
 
 
 def is_build(folder: Path) -> bool:
-    """Whether a folder was written by `compile`: its manifest tells it from any other."""
+    """Whether a folder was written by `compile`: its manifest distinguishes it."""
     return (folder / MANIFEST_NAME).is_file()
 
 

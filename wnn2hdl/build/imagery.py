@@ -1,4 +1,4 @@
-"""What a folder of pictures tells the compiler: the codes and windows that occur, and the edges in them."""
+"""What the compiler learns from a folder of pictures: codes and windows that occur, and edges in them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class Survey:
     Attributes:
         codes: int64 ``[2**width]``, pixels or neighbourhoods of each code.
         windows: int64 ``[512]``, 3x3 windows of the model's answers.
-        left_out: share of the pixels that are no data, or beside such where neighbours count, 0 to 1.
+        left_out: share of the pixels without data, or beside one where neighbours count, 0 to 1.
     """
 
     codes: NDArray[np.int64]
@@ -90,8 +90,8 @@ def learn_edges(
         model: binarises the pictures.
         imagery: the pictures.
         count: how many patterns.
-        luts: only sets that fit so many LUTs are looked at, 1 to 3; None sets no limit.
-        progress: told of each picture read.
+        luts: only sets that fit this many LUTs are considered, 1 to 3; None sets no limit.
+        progress: called with each picture read.
     """
     pairs = _edge_pairs(model, imagery, progress)
     return learned(pairs, count) if luts is None else learned_under_budget(pairs, luts, count)
@@ -109,7 +109,7 @@ def _edge_pairs(
 ) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
     """For each picture the model's answers and Canny's edges.
 
-    Where there is no data both see the nearest data, so that its rim is no edge.
+    Where there is no data both see the nearest data, so that its rim is not an edge.
     """
     classifier = PixelClassifier(model)
     for picture in imagery.pictures(progress):

@@ -37,14 +37,14 @@ class CompileOptions:
         edges: ``boundary``, ``half-plane``, ``learned`` or the path of a file of patterns.
         edge_images: folder of the imagery from which patterns are learned; `care` if left out.
         edge_patterns: how many patterns are learned.
-        edge_luts: learn only patterns that fit so many LUTs, 1 to 3; None sets no limit.
+        edge_luts: learn only patterns that fit this many LUTs, 1 to 3; None sets no limit.
         style: how LUT networks are written: as cells of the vendor, or as equations.
         effort: 0 to 3, how long to look for a smaller circuit.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
         palette: file of the classes and what stands for them in the masks.
-        ignore: codes of the masks' pixels that nobody labelled.
-        bands: how all of these pictures are read, see `wnn2hdl.raster.Reading`; likewise `scale` and `alpha`.
+        ignore: codes of the masks' unlabelled pixels.
+        bands: how all of these pictures are read, with `scale` and `alpha`, see `wnn2hdl.raster.Reading`.
         sobel_threshold: the baseline's, 1 to 2040.
     """
 
@@ -89,7 +89,7 @@ class Plan:
         covers: the two-level cover of each table, for the report, by the names of `Circuit.tables`.
         methods: how the LUT network of each table was found.
         agreement: how far the filter's edges are Canny's; None without imagery to measure it on.
-        left_out: share of the imagery's pixels that are no data, 0 to 1; None without a care set of imagery.
+        left_out: share of the imagery's pixels without data, 0 to 1; None without a care set of imagery.
     """
 
     design: Design
@@ -172,7 +172,7 @@ def _care_sets(model: WisardModel, options: CompileOptions, seen: Survey) -> dic
 def _care_imagery(options: CompileOptions) -> Imagery:
     if options.care is None:
         raise InputError(
-            "domain mode needs imagery that tells which codes occur", hint="give a folder with --care"
+            "domain mode needs imagery that shows which codes occur", hint="give a folder with --care"
         )
     return Imagery(options.care, options.reading)
 

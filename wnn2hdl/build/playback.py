@@ -29,7 +29,7 @@ SimulatorName = Literal["amaranth", "verilator", "icarus"]
 
 @dataclass(frozen=True, eq=False)
 class Playback:
-    """A circuit's answers for a picture, all as they should be.
+    """A circuit's answers for a picture, all of them right.
 
     Attributes:
         windows: windows simulated.
@@ -66,7 +66,7 @@ def play(
         folder: a build whose circuit reads a window.
         picture: the picture, at least as large as a window, all of it data.
         simulator: Amaranth's, or a compiled simulation of the emitted Verilog.
-        progress: told of the windows done; the compiled simulators tell nothing before the end.
+        progress: called with the windows done; the compiled simulators report nothing before the end.
         vcd: where Amaranth's simulator records the waves of the first windows.
         reading: how the picture is read.
 

@@ -99,11 +99,11 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
     """Builds for an index, each with a page; a page that is missing is written.
 
     Args:
-        folders: the builds; those of the same name are told apart by their paths.
+        folders: the builds; those of the same name are distinguished by their paths.
         index: the file of the index, which links to their pages.
 
     Raises:
-        InputError: one is no build, is given twice, or lies in a folder whose name is no UTF-8.
+        InputError: one is not a build, is given twice, or lies in a folder whose name is not UTF-8.
         ModelFileError: a file of one is missing or damaged, the manifest among them.
     """
     places = [folder.resolve() for folder in folders]
@@ -116,7 +116,7 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
     for folder, place in zip(folders, places, strict=True):
         require_build(folder)
         report = read_report(folder)
-        # The page is made of the other files, and one of another version of wnn2hdl is no change of these.
+        # The page is made of the other files, and one of another version of wnn2hdl is not a change of these.
         changes = tuple(check_manifest(folder, besides={REPORT_HTML}))
         if not (folder / REPORT_HTML).is_file():
             write_page(folder)
@@ -130,7 +130,7 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
 def _require_utf8(folder: Path) -> None:
     shown = os.fsencode(folder).decode(errors="backslashreplace")
     if shown != str(folder):
-        raise InputError("the name of a folder is no UTF-8", value=shown, hint="rename it")
+        raise InputError("the name of a folder is not UTF-8", value=shown, hint="rename it")
 
 
 def command(name: str, options: CompileOptions) -> str:
@@ -193,8 +193,8 @@ def _pictures(design: Design, sample: NDArray[np.uint8], palette: Palette) -> tu
         edges = design.networks["edge"].evaluate(window_codes(labels != 0))[..., 0]
         # With a white rim, since pixels there have no whole window, so that all pictures lie alike.
         drawn = np.pad(np.where(edges, np.uint8(0), np.uint8(255)), 1, constant_values=255)
-        told = f"{percent(float(edges.mean()))} of the windows are an edge, drawn in black"
-        found.append(_picture("Edges", told, drawn))
+        caption = f"{percent(float(edges.mean()))} of the windows are an edge, drawn in black"
+        found.append(_picture("Edges", caption, drawn))
     return tuple(found)
 
 

@@ -41,9 +41,9 @@ def foreign_files(design: Design, folder: Path) -> list[str]:
 
 
 def foreign_circuit(design: Design) -> list[str]:
-    """In what the circuit is not one that its target makes of the model, apart from its logic; a line each.
+    """How the circuit differs, apart from its logic, from what its target makes of the model; one line each.
 
-    The logic is a matter of proof. A node or a cell that nothing reads is no matter of it, but vendors'
+    The logic is a matter of proof. A node or a cell that nothing reads is not a matter of it, but vendors'
     tools that are asked to keep cells would keep and count it.
     """
     # In exact mode the only don't-cares are those that the lowering itself finds impossible.
@@ -71,7 +71,7 @@ def foreign_text(design: Design, report: Mapping[str, Any], folder: Path) -> lis
     """Emitted files that are not what the compiler writes for this design, one line each.
 
     The proof reads a text as Yosys reads it; simulators and other synthesisers may read another circuit in
-    the same text, by macros, pragmas, delays and the like. So the text has to be the compiler's own, byte for
+    the same text, by macros, pragmas, delays and so on. So the text has to be the compiler's own, byte for
     byte: tools also differ in the characters that end a line.
     """
     threshold = report["options"].get("sobel_threshold")
@@ -131,11 +131,11 @@ def false_statements(
     }
     problems = list(_contradictions("", report, json.loads(json.dumps(found))))
     extra = [f"parts.{part}" for part in report["parts"] if part not in syntheses]
-    return problems + [f"{REPORT_FILE} has {place}, which is no part of the build" for place in extra]
+    return problems + [f"{REPORT_FILE} has {place}, which is not a part of the build" for place in extra]
 
 
 def _contradictions(place: str, stated: Any, found: Any) -> Iterator[str]:
-    """Where a report differs from what was found; what only the report knows is no difference."""
+    """Where a report differs from what was found; what only the report knows is not a difference."""
     if isinstance(found, dict) and isinstance(stated, Mapping):
         for key, value in found.items():
             yield from _contradictions(f"{place}.{key}" if place else key, stated.get(key), value)

@@ -19,7 +19,7 @@ def open_build(folder: Path) -> tuple[Design, Files, dict[str, Any]]:
     """A build's design, files and report.
 
     Raises:
-        InputError: the folder is no build.
+        InputError: the folder is not a build.
         ModelFileError: one of its files is missing or damaged.
     """
     require_build(folder)
@@ -42,7 +42,7 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         missing, or changed so that nothing can be checked.
 
     Raises:
-        InputError: the folder is no build.
+        InputError: the folder is not a build.
         ToolError: an outside program is missing or failed.
     """
     require_build(folder)
@@ -67,17 +67,17 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
 def inspect_build(folder: Path) -> tuple[list[str], tuple[Design, Files, dict[str, Any]] | None]:
     """What can be seen without simulation, proof and synthesis.
 
-    The hashes notice changes by accident; somebody who wants to deceive writes them anew. So nothing in the
+    The hashes notice changes by accident; somebody who wants to deceive rewrites them. So nothing in the
     folder is believed but the model and the design's choices: its text is written again here, its circuit is
     proved and the report's figures are found again in `verify_build`. What is not found again is what takes
     pictures: accuracy, coverage, and whether the care set is that of the imagery meant; report and Verilog
     say how large it is.
 
     Returns:
-        What is wrong, one line each; and the build, None if it is none that could be checked further.
+        What is wrong, one line each; and the build, None if it cannot be checked further.
 
     Raises:
-        InputError: the folder is no build.
+        InputError: the folder is not a build.
         ToolError: Yosys is missing or failed.
     """
     require_build(folder)

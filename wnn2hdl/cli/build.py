@@ -9,26 +9,41 @@ from wnn2hdl.build.compile import compile_model, require_luts
 from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder
+from wnn2hdl.cli.options import file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
-from wnn2hdl.cli.pictures import alpha_option, bands_option, ignore_option, palette_option, scale_option
+from wnn2hdl.cli.pictures import (
+    MASKS,
+    READING,
+    alpha_option,
+    bands_option,
+    ignore_option,
+    palette_option,
+    scale_option,
+)
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style
 from wnn2hdl.ir.models import load_model
 from wnn2hdl.lower.targets import TARGETS
 
+SECTIONS = {
+    "Circuit": ("--target", "--name", "--mode", "--care", "--care-min", "--style", "--effort", "--max-luts"),
+    "Edge filter": ("--edges", "--edge-images", "--edge-patterns", "--edge-luts"),
+    "Pictures": ("--test-images", "--test-masks", *MASKS, *READING),
+}
 
-@app.command("compile")
+
+@app.command("compile", sections=SECTIONS)
 @click.argument("model", type=file)
-@click.option("-o", "output", type=folder, required=True, help="The build folder to write, as in build/NAME.")
+@output_option("Write the build into this folder, as in build/NAME.", required=True)
 @click.option(
     "--target",
     type=click.Choice(list(TARGETS)),
-    help="What to compile.  [default: neighbourhood for models that look at neighbours, else block]",
+    metavar="TARGET",
+    help=f"Compile this: {', '.join(TARGETS)}.  [default: by the model]",
 )
 @click.option(
     "--name",
-    help="What the names of all Verilog modules begin with.  [default: the name of the build folder]",
+    help="Begin all module names with this.  [default: the folder's name]",
 )
 @click.option(
     "--input",
@@ -40,56 +55,64 @@ from wnn2hdl.lower.targets import TARGETS
     type=click.Choice(get_args(Mode)),
     default="exact",
     show_default=True,
-    help="Equal to the model on every input, or on the codes that occur in --care.",
+    help="Equal the model on every input, or on the codes that occur in --care.",
 )
-@click.option("--care", type=folder, help="Folder of imagery that makes the care set of domain mode.")
+@click.option("--care", type=folder, help="Take the care set of domain mode from this imagery.")
 @click.option(
     "--care-min",
     type=click.IntRange(min=1),
+    metavar="N",
     default=1,
     show_default=True,
-    help="How often a code must occur in it to be cared for.",
+    help="Care for codes that occur this often.",
 )
 @click.option(
     "--edges",
     default="boundary",
     show_default=True,
-    metavar="boundary|half-plane|learned|FILE",
-    help="Pattern set of the edge filter.",
+    metavar="NAME|FILE",
+    help="Use boundary, half-plane, learned or a file's patterns.",
 )
-@click.option("--edge-images", type=folder, help="Imagery to learn edge patterns from; --care by default.")
+@click.option("--edge-images", type=folder, help="Learn from this imagery.  [default: --care]")
 @click.option(
     "--edge-patterns",
     type=click.IntRange(1, 510),
+    metavar="N",
     default=75,
     show_default=True,
-    help="How many patterns are learned.",
+    help="Learn N patterns.",
 )
 @click.option(
-    "--edge-luts", type=click.IntRange(1, 3), help="Learn only patterns whose filter fits so many LUTs."
+    "--edge-luts",
+    type=click.IntRange(1, 3),
+    metavar="N",
+    help="Learn only filters of at most N LUTs.",
 )
 @click.option(
     "--style",
     type=click.Choice(get_args(Style)),
     default="cells",
     show_default=True,
-    help="Write LUTs as cells, which synthesis keeps, or as equations, which it may restructure.",
+    help="Write LUTs as cells, which synthesis keeps, or as equations, which it may change.",
 )
 @click.option(
     "--effort",
     type=click.IntRange(0, 3),
+    metavar="N",
     default=1,
     show_default=True,
-    help="How long to look for fewer LUTs.",
+    help="Set the search effort.",
 )
-@click.option("--test-images", type=folder, help="Pictures for the accuracies in the report.")
-@click.option("--test-masks", type=folder, help="Masks of --test-images.")
+@click.option("--test-images", type=folder, help="Measure the report's accuracies on these pictures.")
+@click.option("--test-masks", type=folder, help="Find the masks of --test-images in this folder.")
 @palette_option
 @ignore_option
 @bands_option
 @scale_option
 @alpha_option
-@click.option("--max-luts", type=click.IntRange(min=0), help="Fail if the target takes more LUTs.")
+@click.option(
+    "--max-luts", type=click.IntRange(min=0), metavar="N", help="Fail if the whole target takes more LUTs."
+)
 @json_option
 def compile_command(
     model: Path,
@@ -102,7 +125,6 @@ def compile_command(
 
     \b
     Examples:
-      wnn2hdl compile model.json -o build/mine
       wnn2hdl compile model.json --mode domain --care IMAGES -o build/mine
       wnn2hdl compile model.json --edges learned --edge-images IMAGES --edge-luts 2 -o build/mine
     """

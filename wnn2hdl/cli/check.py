@@ -1,4 +1,4 @@
-"""`verify`, `simulate` and `synth`: what a build folder says, done again."""
+"""`verify`, `simulate` and `synth`: check, run or count an existing build."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -11,7 +11,7 @@ from wnn2hdl.build.checking import synthesise_parts
 from wnn2hdl.build.playback import SimulatorName, play
 from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder
+from wnn2hdl.cli.options import file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.errors import CheckError
@@ -47,18 +47,24 @@ def verify_command(build: Path, as_json: bool) -> None:
     text = f"{build}: files unchanged, simulated, proved, counted" if not problems else "\n".join(problems)
     emit(data, text, as_json=as_json)
     if problems:
-        raise CheckError(f"{build} is not as it was built", value=problems[0])
+        raise CheckError(f"{build} does not pass its checks", value=problems[0])
 
 
 @app.command("simulate")
 @build_argument
-@click.option("--image", type=file, required=True, help="The picture to run over.")
+@click.option("--image", type=file, required=True, help="Run over this picture.")
 @reading_options
 @click.option(
-    "--simulator", type=click.Choice(get_args(SimulatorName)), default="amaranth", show_default=True
+    "--simulator",
+    type=click.Choice(get_args(SimulatorName)),
+    default="amaranth",
+    show_default=True,
+    help="Simulate the circuit with this program.",
 )
-@click.option("--vcd", type=file, help="Record the waves of the first windows (Amaranth's simulator).")
-@click.option("-o", "output", type=folder, help="Folder for the pictures.  [default: BUILD/simulation]")
+@click.option(
+    "--vcd", type=file, help="Record the waves of the first windows here (with Amaranth's simulator)."
+)
+@output_option("Write the pictures into this folder.  [default: BUILD/simulation]")
 @json_option
 def simulate_command(
     build: Path,
@@ -73,7 +79,6 @@ def simulate_command(
 
     \b
     Examples:
-      wnn2hdl simulate build/mine --image photo.png
       wnn2hdl simulate build/mine --image photo.png --simulator verilator -o build/pictures
       wnn2hdl simulate build/mine --image photo.png --vcd build/waves.vcd
     """
@@ -99,8 +104,8 @@ def simulate_command(
         "pictures": [str(output / f"{image.stem}-{name}.png") for name in pictures],
     }
     text = (
-        f"{image}: {result.windows:,} windows in {result.seconds:.1f} s ({rate:,.0f} a second), all bits "
-        f"as they should be; {result.cared:.2%} of the {places} have a code that the circuit is proved on\n"
+        f"{image}: {result.windows:,} windows in {result.seconds:.1f} s ({rate:,.0f} per second), all bits "
+        f"as the model says; {result.cared:.2%} of the {places} have a code that the circuit is proved on\n"
         f"pictures in {output}"
     )
     emit(data, text, as_json=as_json)

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import click
 from click.shell_completion import CompletionItem
 
+from wnn2hdl.cli.help import Command
+
 
 class Entry(NamedTuple):
     """Where a command is and what it does.
@@ -41,12 +43,14 @@ COMMANDS: Mapping[str, Entry] = {
 class LazyGroup(click.Group):
     """A group that imports a command's module when the command is asked for."""
 
+    command_class = Command
+
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002  # click's signature
         """The names, in the order of the list."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command; None where there is none of this name."""
+        """Import a command; None if there is none of this name."""
         if cmd_name in COMMANDS and cmd_name not in self.commands:
             import_module(f"wnn2hdl.cli.{COMMANDS[cmd_name].module}")
         return super().get_command(ctx, cmd_name)
@@ -57,7 +61,7 @@ class LazyGroup(click.Group):
             formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items()])
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """The commands that begin so, then the group's own options."""
+        """The commands that begin with what was typed, then the group's own options."""
         names = [
             CompletionItem(name, help=entry.help)
             for name, entry in COMMANDS.items()

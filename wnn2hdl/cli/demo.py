@@ -3,23 +3,22 @@
 from pathlib import Path
 from typing import Any
 
-import click
 from rich.console import Console
 from rich.table import Table
 
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import folder, seed_option
+from wnn2hdl.cli.options import output_option, seed_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.errors import CheckError
 from wnn2hdl.files import output_folder
 
 
 @app.command("demo")
-@click.option("-o", "output", type=folder, default=Path("build/demo"), show_default=True, help="Folder.")
+@output_option("Write everything into this folder.", default=Path("build/demo"), show_default=True)
 @seed_option
 @json_option
 def demo_command(output: Path, seed: int, as_json: bool) -> None:
-    """Landscapes to proved Verilog, a map, a flight and a page of it all, without a file of yours.
+    """Run every stage on generated data: a sweep, two circuits, a map, a flight and a page of it all.
 
     \b
     Examples:

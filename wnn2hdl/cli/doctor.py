@@ -15,9 +15,9 @@ from wnn2hdl.tools.inventory import Part, inventory
 @app.command("doctor")
 @json_option
 def doctor_command(as_json: bool) -> None:
-    """Tell which tools are found, which are missing, and how to install them.
+    """Show which tools are found, which are missing, and how to install them.
 
-    Exit status 1 if one is missing that compiling cannot do without; the others are optional.
+    The exit status is 1 if a tool is missing that `compile` needs; the others are optional.
 
     \b
     Examples:

@@ -25,9 +25,10 @@ from wnn2hdl.cli.options import (
     masks_option,
     seed_option,
     share_option,
+    square_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.pictures import mask_options, reading_options
+from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
 from wnn2hdl.dataset import Dataset, from_samples
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
@@ -45,7 +46,6 @@ from wnn2hdl.evaluation.measures import (
     wilson,
 )
 from wnn2hdl.evaluation.rows import load_vector_classifier, row_confusion
-from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.lower.targets import TARGETS
@@ -56,26 +56,29 @@ from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
 MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 
 
-@app.command("evaluate")
+SECTIONS = {
+    "Pictures with masks": ("--images", "--masks", *MASKS, *READING, "--square", "--share"),
+    "Pictures with tags": ("--chips", "--tags"),
+    "Feature vectors": ("--table", "--label", "--raw"),
+}
+
+
+@app.command("evaluate", sections=SECTIONS)
 @click.argument("model", type=click.Path(exists=True, path_type=Path))
 @images_option
 @masks_option
 @mask_options
 @reading_options
-@click.option("--chips", type=folder, help="Folder of pictures tagged as a whole; needs --tags.")
-@click.option("--tags", type=file, help="CSV of the chips' tags: image_name,tags.")
-@click.option("--table", type=file, help="CSV of feature vectors; needs --label.")
-@click.option("--label", help="Column of the table that names the class.")
+@click.option("--chips", type=folder, help="Read pictures tagged as a whole (needs --tags).")
+@click.option("--tags", type=file, help="Read image_name,tags of the chips from this CSV.")
+@click.option("--table", type=file, help="Read feature vectors from this CSV file (needs --label).")
+@click.option("--label", metavar="COLUMN", help="Take the classes from this column of the table.")
 @click.option(
     "--raw/--scaled",
     default=None,
-    help="Whether the table's features still have to be scaled as the model notes, or are.",
+    help="Scale the table's features as the model says, or take them as they are.",
 )
-@click.option(
-    "--square",
-    type=click.IntRange(1, MAX_SIDE),
-    help="Measure squares of so many pixels a side by majority, too.",
-)
+@square_option("Also measure squares whose pixels vote.")
 @share_option
 @seed_option
 @json_option
@@ -97,25 +100,21 @@ def evaluate_command(
 ) -> None:
     """Measure MODEL, a model file or a build folder (its circuit and its model).
 
-    On pictures with masks, or the embedded landscapes if none are given: accuracy, kappa, mean intersection
+    On pictures with masks, or on embedded landscapes if none are given: accuracy, kappa, mean intersection
     over union, and each class's precision, recall, F1 and IoU. On pictures with tags: how well the share
-    called deforested tells cleared land from forest. Intervals are bootstrapped over images. On a table of
-    feature vectors: the same measures, and Wilson's interval of the accuracy. A figure that is undefined
-    (0/0) is null.
+    called deforested separates cleared land from forest. Intervals are bootstrapped over images. On feature
+    vectors: the same measures, with Wilson's interval of the accuracy. An undefined figure (0/0) is null.
 
     \b
     Examples:
-      wnn2hdl evaluate model.json
-      wnn2hdl evaluate model.json --images images --masks masks
-      wnn2hdl evaluate build/mine --images images --masks masks --square 20 --json
-      wnn2hdl evaluate model.json --chips chips --tags labels.csv
-      wnn2hdl evaluate model.json --table data.csv --label class
+      wnn2hdl evaluate build/mine --images IMAGES --masks MASKS --square 20
+      wnn2hdl evaluate model.json --table data.csv --label class --json
     """
     if table is not None or label is not None:
         if table is None or label is None:
             raise InputError("these options go together", value="--table and --label", hint="give both")
         if images or masks or mask_format or chips or tags or square or reading != Reading():
-            raise InputError("a table has no pictures", hint="leave the options of pictures out")
+            raise InputError("a table has no pictures", hint="leave out the options for pictures")
         data, text = _with_table(model, table, label, raw)
         emit({"classifier": str(model), **data}, text, as_json=as_json)
         return
@@ -164,8 +163,8 @@ def _dataset(
     reading: Reading,
     seed: int,
 ) -> Dataset:
-    told = images or masks or mask_format or reading != Reading()
-    if not told and classifier.classes == SAMPLE_CLASSES:
+    given = images or masks or mask_format or reading != Reading()
+    if not given and classifier.classes == SAMPLE_CLASSES:
         return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed, every_kind=True)
     return labelled(images, masks, mask_format=mask_format, reading=reading, seed=seed)
 

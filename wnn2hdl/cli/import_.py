@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file
+from wnn2hdl.cli.options import file, output_option
 from wnn2hdl.cli.output import emit, json_option
 from wnn2hdl.importers import ImportOptions, import_model, known_formats
 from wnn2hdl.ir import Thermometer, Words
@@ -21,51 +21,57 @@ class FormatType(click.ParamType[str]):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The name, if there is such a format."""
         if value not in known_formats():
-            self.fail(f"{value!r} is none of {', '.join(known_formats())}", param, ctx)
+            self.fail(f"{value!r} is not one of {', '.join(known_formats())}", param, ctx)
         return str(value)
 
 
 @app.command("import")
 @click.argument("model", metavar="FILE", type=file)
-@click.option("-o", "--output", type=file, required=True, help="Model file to write.")
+@output_option("Write the model to this file.", is_file=True, required=True)
 @click.option(
-    "--format", "format_name", type=FormatType(), help="Format of FILE; found by its content if left out."
+    "--format",
+    "format_name",
+    type=FormatType(),
+    help="Take FILE for this format.  [default: recognised by its content]",
 )
 @click.option(
-    "--bleaching",
+    "--bleach",
     type=click.IntRange(min=1),
-    help="Fix the threshold of a wisardpkg model: another classifier than the file's.",
+    metavar="N",
+    help="Fix the bleaching threshold of a wisardpkg model (this changes the classifier).",
 )
 @click.option(
-    "--config", type=file, help="config.json of KANELÉ truth tables; the one beside FILE if left out."
+    "--config",
+    type=file,
+    help="Read this config.json of KANELE truth tables.  [default: the one beside FILE]",
 )
 @click.option(
     "--classes",
     type=click.IntRange(min=2),
-    help="Number of classes of a DWN whose checkpoint does not say it.",
+    metavar="N",
+    help="Say how many classes a DWN has if its checkpoint does not.",
 )
 @json_option
 def import_command(
     model: Path,
     output: Path,
     format_name: str | None,
-    bleaching: int | None,
+    bleach: int | None,
     config: Path | None,
     classes: int | None,
     as_json: bool,
 ) -> None:
     """Turn another tool's trained model, FILE, into a model file.
 
-    Formats: wisardpkg JSON, BTHOWeN .pickle.lzma, DWN checkpoints of PyTorch, KANELÉ truth tables, AIGER,
+    Formats: wisardpkg JSON, BTHOWeN .pickle.lzma, DWN checkpoints of PyTorch, KANELE truth tables, AIGER,
     BLIF. Files are read as data: nothing in them is run, and PyTorch is not needed.
 
     \b
     Examples:
-      wnn2hdl import dwn_checkpoint.pt -o model.json
-      wnn2hdl import wisard.json --bleaching 3 -o model.json
+      wnn2hdl import wisard.json --bleach 3 -o model.json
       wnn2hdl import truth_tables.json --config config.json -o model.json
     """
-    options = ImportOptions(bleaching=bleaching, config=config, classes=classes)
+    options = ImportOptions(bleach=bleach, config=config, classes=classes)
     importer, imported = import_model(model, options, format_name)
     imported.save(output)
     kind, names = (
@@ -86,7 +92,7 @@ def import_command(
 
 
 def _reads(model: ClassifierModel | LogicModel) -> str:
-    """What goes into a model, in words: whether it encodes features itself is not to be missed."""
+    """What goes into a model, in words, so that users see whether it encodes features itself."""
     encoder = None if isinstance(model, LogicModel) else model.encoder
     if isinstance(encoder, Thermometer):
         return f"{encoder.features} features as {encoder.width} thermometer bits"

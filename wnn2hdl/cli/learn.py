@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     BleachingType,
+    bits_option,
     file,
     folder,
     images_option,
     labelled,
     masks_option,
+    output_option,
     seed_option,
     spoken_command,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.pictures import mask_options, reading_options
+from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
@@ -70,49 +72,65 @@ class Discriminators:
             )
 
 
-@app.command("train")
+SECTIONS = {
+    "Images and labels": ("--images", "--masks", *MASKS, *READING, "--regions", "--chips"),
+    "Discriminators": ("--bits", "--address-bits", "--rams", "--bleach", "--balance"),
+    "Other classifiers": ("--luts-per-pixel", "--neighbourhood", "--pareto", "--trials"),
+}
+
+
+@app.command("train", sections=SECTIONS)
 @images_option
 @masks_option
 @mask_options
 @reading_options
-@click.option("--regions", type=file, help="CSV of labelled rectangles: chip,label,x,y,width,height.")
-@click.option("--chips", type=folder, help="Folder of the chips that --regions names.")
+@click.option("--regions", type=file, help="Read chip,label,x,y,width,height from this CSV.")
+@click.option("--chips", type=folder, help="Find the chips of --regions in this folder.")
+@bits_option
 @click.option(
-    "--bits", metavar="R7,R6,...", help="Pixel bits to read.  [default: the 4 high bits of R, G, B]"
+    "--address-bits",
+    type=click.IntRange(1, 20),
+    metavar="N",
+    help="Set the address bits of a RAM.  [default: 4]",
 )
-@click.option("--address-bits", type=click.IntRange(1, 20), help="n, address bits of a RAM.  [default: 4]")
-@click.option("--rams", type=click.IntRange(min=1), help="k, RAMs of a discriminator.  [default: 16]")
+@click.option(
+    "--rams",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Set the RAMs of a discriminator.  [default: 16]",
+)
 @click.option(
     "--bleach",
     type=BleachingType(),
-    help="Bleaching threshold; auto: cross-validated by image.  [default: auto]",
+    help="Set the bleaching threshold, or cross-validate it.  [default: auto]",
 )
 @click.option(
-    "--balance",
-    is_flag=True,
-    default=None,
-    help="Let all classes weigh alike, however many pixels they have, so that rare ones are found.",
+    "--balance", is_flag=True, default=None, help="Weigh all classes equally, so that rare ones are found."
 )
 @click.option(
-    "--max-luts", type=click.IntRange(min=1), help="The most accurate classifier of so many LUTs a pixel."
+    "--luts-per-pixel",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Find the most accurate classifier of at most N LUTs per pixel.",
 )
 @click.option(
     "--neighbourhood",
     type=click.Choice(["3", "5"]),
-    help="Look at the 3x3 or 5x5 pixels around: six tables of two LUTs and a LUT over them.",
+    help="Classify pixels by the 3x3 or 5x5 around them.",
 )
 @click.option(
-    "--pareto", is_flag=True, help="The front of accuracy against LUTs, a model each, and its plot."
+    "--pareto", is_flag=True, help="Write a model for each point of the front of LUTs and accuracy."
 )
 @click.option(
     "--trials",
     type=click.IntRange(min=0),
+    metavar="N",
     default=20,
     show_default=True,
-    help="Random mappings that --max-luts and --pareto try.",
+    help="Try N random mappings for --luts-per-pixel or --pareto.",
 )
 @seed_option
-@click.option("-o", "output", type=file, required=True, help="The model file to write.")
+@output_option("Write the model to this file.", is_file=True, required=True)
 @json_option
 def train_command(
     images: Path | None,
@@ -121,7 +139,7 @@ def train_command(
     reading: Reading,
     regions: Path | None,
     chips: Path | None,
-    max_luts: int | None,
+    luts_per_pixel: int | None,
     neighbourhood: str | None,
     pareto: bool,
     trials: int,
@@ -130,20 +148,18 @@ def train_command(
     as_json: bool,
     **discriminators: Any,
 ) -> None:
-    """Train a pixel classifier on labelled images; on embedded landscapes if none are given.
+    """Train a classifier of pixels on labelled images, or on embedded landscapes if none are given.
 
     \b
     Examples:
       wnn2hdl train --images IMAGES --masks MASKS -o model.json
-      wnn2hdl train --regions regions.csv --chips CHIPS --address-bits 4 --rams 16 -o model.json
-      wnn2hdl train --images IMAGES --masks MASKS --max-luts 2 -o model.json
-      wnn2hdl train --images IMAGES --masks MASKS --neighbourhood 3 -o model.json
+      wnn2hdl train --regions regions.csv --chips CHIPS --luts-per-pixel 2 -o model.json
     """
     dataset = labelled(
         images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
     )
     options = Discriminators(**discriminators)
-    # Before the training, so that a place that cannot be written is told at once.
+    # Before the training, so that a place that cannot be written is reported at once.
     make_folder(output.parent)
     points: tuple[Point, ...] = ()
     with held(output, "model"), progress() as report:
@@ -151,16 +167,18 @@ def train_command(
             options.require_none("--pareto")
             if neighbourhood is not None:
                 raise InputError("--pareto compares pixel classifiers", hint="leave --neighbourhood out")
-            points = measure(dataset, trials=trials, seed=seed, progress=report, max_luts=max_luts)
+            points = measure(
+                dataset, trials=trials, seed=seed, progress=report, luts_per_pixel=luts_per_pixel
+            )
             model = max(pareto_front(points), key=lambda point: point.accuracy).model
         elif neighbourhood is not None:
             options.require_none("--neighbourhood")
             model = train_neighbourhood(
-                dataset, int(neighbourhood), max_luts=max_luts, seed=seed, progress=report
+                dataset, int(neighbourhood), luts_per_pixel=luts_per_pixel, seed=seed, progress=report
             )
-        elif max_luts is not None:
-            options.require_none("--max-luts")
-            model = train_under_budget(dataset, max_luts, trials=trials, seed=seed, progress=report)
+        elif luts_per_pixel is not None:
+            options.require_none("--luts-per-pixel")
+            model = train_under_budget(dataset, luts_per_pixel, trials=trials, seed=seed, progress=report)
         else:
             model = options.train(dataset, seed, report)
         model = with_colours(model, dataset, report)
@@ -200,7 +218,7 @@ def _sentence(summary: dict[str, Any]) -> str:
     if left_out["pixels"]:
         lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")
     lines += [
-        f"{point['luts']} LUTs a pixel: {point['accuracy']:.2%} in cross-validation by image, "
+        f"{point['luts']} LUTs per pixel: {point['accuracy']:.2%} in cross-validation by image, "
         f"{point['method']}, {point['model']}"
         for point in summary.get("front", ())
     ]

@@ -13,9 +13,9 @@ from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder, seed_option
+from wnn2hdl.cli.options import file, folder, jobs_option, output_option, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.pictures import reading_options
+from wnn2hdl.cli.pictures import READING, reading_options
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import output_folder
 from wnn2hdl.raster import Reading
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from wnn2hdl.apps.navigation.results import SearchKind
 
 REFERENCE_WINDOW_M = 95.0
-"""The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre a pixel."""
+"""The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre per pixel."""
 
 LEAST_FRAMES = 4
-"""With 3 that are all right, a fix still cannot be told to be right in 95 % of cases."""
+"""Even if 3 frames are all right, it does not follow that a fix is right in 95 % of cases."""
 
 
 class CalibrationType(click.ParamType[int | Path]):
     """How many frames of the flight, or a file with the poses of some."""
 
-    name = "COUNT|POSES.csv"
+    name = "N|POSES.csv"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int | Path:
         """The count, or the file."""
@@ -52,7 +52,7 @@ class CalibrationType(click.ParamType[int | Path]):
 class MethodsType(click.ParamType[tuple[str, ...]]):
     """Keys of methods, by commas."""
 
-    name = "METHOD,…"
+    name = "METHOD,..."
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -63,46 +63,53 @@ class MethodsType(click.ParamType[tuple[str, ...]]):
         keys = [key.strip() for key in str(value).split(",")]
         unknown = [key for key in keys if key not in METHODS]
         if unknown:
-            self.fail(f"{unknown[0]!r} is none of {', '.join(METHODS)}", param, ctx)
+            self.fail(f"{unknown[0]!r} is not one of {', '.join(METHODS)}", param, ctx)
         return tuple(keys)
 
 
-@app.command("locate")
-@click.option("--map", "map_file", type=file, help="GeoTIFF of the country flown over.")
+SECTIONS = {
+    "Flight": ("--map", *READING, "--frames", "--poses", "--camera", "--focal"),
+    "Calibration": ("--calibrate", "--calibrate-frames", "--calibration"),
+    "Search": ("--methods", "--search", "--window", "--heading-tolerance", "--height-tolerance"),
+}
+
+
+@app.command("locate", sections=SECTIONS)
+@click.option("--map", "map_file", type=file, help="Search this GeoTIFF of the country flown over.")
 @reading_options
-@click.option("--frames", type=folder, help="Folder of the camera's frames.")
-@click.option("--poses", "poses_file", type=file, help="CSV of the frames' logged poses, the truth.")
-@click.option("--camera", "camera_file", type=file, help="TOML of the camera.")
-@click.option("--focal", type=FiniteRange(1, 1e6), metavar="PIXELS", help="Focal length in the frames.")
+@click.option("--frames", type=folder, help="Read the camera's frames from this folder.")
+@click.option("--poses", "poses_file", type=file, help="Read the frames' logged poses from this CSV file.")
+@click.option("--camera", "camera_file", type=file, help="Read the camera from this TOML file.")
+@click.option("--focal", type=FiniteRange(1, 1e6), metavar="PIXELS", help="Set the focal length.")
 @click.option(
     "--calibrate",
     "calibrate",
     type=CalibrationType(),
-    help="Fit camera, edges and confidence on so many frames, or on those of a CSV; they are not scored.",
+    help="Fit camera, edges and confidence on N frames, or on a CSV's, which are not scored.",
 )
 @click.option(
     "--calibrate-frames",
     type=folder,
-    help="Folder of the frames of --calibrate's CSV.  [default: that of --frames]",
+    help="Find the CSV's frames here.  [default: --frames]",
 )
 @click.option(
     "--calibration",
     "calibration_file",
     type=file,
-    help="Take what an earlier run has learned: its calibration.json, of the same camera and map.",
+    help="Use an earlier run's calibration.json.",
 )
 @click.option(
     "--methods",
     type=MethodsType(),
     default=METHODS,
-    help="Which to compare, as in grey,perspective-weightless.  [default: all five]",
+    help="Compare these methods.  [default: all]",
 )
 @click.option(
     "--search",
     type=click.Choice(["window", "map", "both"]),
     default="both",
     show_default=True,
-    help="Search a window around the truth, the whole map, or each.",
+    help="Search windows, the whole map, or both.",
 )
 @click.option(
     "--window",
@@ -111,27 +118,27 @@ class MethodsType(click.ParamType[tuple[str, ...]]):
     default=REFERENCE_WINDOW_M,
     show_default=True,
     metavar="METRES",
-    help="From the window's middle to its sides.",
+    help="Search this far to each side.",
 )
 @click.option(
     "--heading-tolerance",
     "heading_deg",
     type=FiniteRange(0, 180),
     metavar="DEGREES",
-    help="Try headings up to so much beside the logged ones.  [default: as calibrated, or 0]",
+    help="Try headings up to this far off.",
 )
 @click.option(
-    "--scale-tolerance",
-    "scale_percent",
+    "--height-tolerance",
+    "height_percent",
     type=FiniteRange(0, 50),
     metavar="PERCENT",
     default=0,
     show_default=True,
-    help="Try heights up to so much above and below the logged ones.",
+    help="Try heights up to this far off.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), help="Frames at a time.  [default: all cores]")
+@jobs_option("frames")
 @seed_option
-@click.option("-o", "output", type=folder, default=Path("build/flight"), show_default=True, help="Folder.")
+@output_option("Write into this folder.", default=Path("build/flight"), show_default=True)
 @json_option
 def locate_command(
     map_file: Path | None,
@@ -147,7 +154,7 @@ def locate_command(
     search: str,
     window_m: float,
     heading_deg: float | None,
-    scale_percent: float,
+    height_percent: float,
     jobs: int | None,
     seed: int,
     output: Path,
@@ -156,19 +163,15 @@ def locate_command(
     """Locate the frames of a flight on a map, by several methods side by side.
 
     Without --map, a small synthetic flight is located. A window around the logged position bounds the error:
-    with the default of 95 m, the reference's, no error can exceed 134 m, and a blind guess would be 73 m off
-    on average. Searching the whole map has no such help, and needs no position in POSES: without one, a frame
-    is located and no error told.
+    with the default of 95 m, no error can exceed 134 m, and a blind guess would be 73 m off on average.
+    Searching the whole map has no such help and needs no position in the poses; without one, a frame is
+    located and no error is reported.
 
     \b
     Examples:
-      wnn2hdl locate
-      wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --camera camera.toml
       wnn2hdl locate --map map.tif --frames FRAMES --poses poses.csv --focal 750 --calibrate 10
-      wnn2hdl locate --map map.tif --frames NEW --poses new.csv --focal 750 --calibrate known.csv \\
-        --calibrate-frames KNOWN --search map
       wnn2hdl locate --map map.tif --frames NEW --poses new.csv --focal 750 --search map \\
-        --calibration build/flight/calibration.json --methods perspective-weightless
+        --calibration build/flight/calibration.json
     """
     # Not at the top: they load what other commands need not wait for.
     from wnn2hdl.apps.navigation.flight import run_flight
@@ -184,13 +187,13 @@ def locate_command(
         searches["map"] = None
     if calibration_file and calibrate:
         raise InputError(
-            "--calibration takes what --calibrate learned before",
+            "--calibration takes what an earlier --calibrate learned",
             value=calibration_file,
             hint="give one of them",
         )
     if calibrate_frames and not isinstance(calibrate, Path):
         raise InputError(
-            "--calibrate-frames are those of a CSV of --calibrate", value=calibrate_frames, hint="give both"
+            "--calibrate-frames goes with a CSV file in --calibrate", value=calibrate_frames, hint="give both"
         )
     known = Learned.read(calibration_file) if calibration_file else None
     with output_folder(output, "flight"), progress() as report:
@@ -223,7 +226,7 @@ def locate_command(
             report,
             keys=methods,
             heading_deg=heading_deg,
-            scale=scale_percent / 100,
+            scale=height_percent / 100,
             jobs=jobs,
         )
         written = write_run(run, output)
@@ -239,11 +242,11 @@ def _poses(path: Path) -> tuple[Pose, ...]:
 
 
 def _unseen(poses: tuple[Pose, ...], calibrating: tuple[Pose, ...]) -> tuple[Pose, ...]:
-    """Poses that have not calibrated."""
+    """Poses that were not used to calibrate."""
     unseen = tuple(pose for pose in poses if pose not in calibrating)
     if not unseen:
         raise InputError(
-            "all frames of the poses have calibrated", value=poses[0].frame, hint="locate other frames"
+            "all frames of the poses were used to calibrate", value=poses[0].frame, hint="locate other frames"
         )
     return unseen
 
@@ -251,7 +254,7 @@ def _unseen(poses: tuple[Pose, ...], calibrating: tuple[Pose, ...]) -> tuple[Pos
 def _divided(
     poses: tuple[Pose, ...], calibration: int | Path | None, elsewhere: Path | None
 ) -> tuple[tuple[Pose, ...], tuple[Pose, ...]]:
-    """Poses that are scored and poses that calibrate, whose frames may lie in a folder of their own."""
+    """Poses that are scored, and poses that calibrate, whose frames may lie in another folder."""
     if calibration is None:
         return poses, ()
     if isinstance(calibration, int):
@@ -259,7 +262,7 @@ def _divided(
         return scored, calibrating
     calibrating = _poses(calibration)
     names = {pose.frame for pose in calibrating}
-    # Cameras count anew for each flight: in another folder, a name may be another frame's.
+    # Cameras start to count again on each flight: in another folder, a name may be another frame's.
     scored = tuple(
         pose for pose in poses if pose not in calibrating and (elsewhere or pose.frame not in names)
     )
@@ -272,12 +275,12 @@ def _divided(
 
 def _camera(path: Path | None, focal: float | None) -> Camera | float:
     if path and focal:
-        raise InputError("--camera and --focal both tell the focal length", hint="give one of them")
+        raise InputError("--camera and --focal both give the focal length", hint="give one of them")
     if path:
         return Camera.read(path)
     if focal:
         return focal
-    raise InputError("nothing is known of the camera", hint="give --camera CAMERA.toml or --focal PIXELS")
+    raise InputError("the camera is not known", hint="give --camera CAMERA.toml or --focal PIXELS")
 
 
 def _refuse_halves(given: Mapping[str, Path | None], own: Mapping[str, object]) -> None:
@@ -287,10 +290,10 @@ def _refuse_halves(given: Mapping[str, Path | None], own: Mapping[str, object]) 
         raise InputError(
             "these options go together", value=", ".join(given), hint=f"give {', '.join(missing)}"
         )
-    told = [name for name, value in own.items() if value is not None]
-    if told:
+    given_own = [name for name, value in own.items() if value is not None]
+    if given_own:
         raise InputError(
             "the embedded flight has its own camera and map",
-            value=" ".join(told),
-            hint=f"drop it, or give {missing[0]}",
+            value=" ".join(given_own),
+            hint=f"leave it out, or give {missing[0]}",
         )

@@ -30,7 +30,9 @@ def _print_version(context: click.Context, _: click.Parameter, asked: bool) -> N
     context.exit()
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
+)
 @click.option(
     "--version",
     is_flag=True,
@@ -48,10 +50,10 @@ def app() -> None:
       wnn2hdl train --images IMAGES --masks MASKS -o model.json
       wnn2hdl compile model.json -o build/mine
 
-    `wnn2hdl doctor` tells which tools are here, `wnn2hdl COMMAND --help` what a command takes.
+    `wnn2hdl doctor` shows which tools are installed, `wnn2hdl COMMAND --help` what a command takes.
 
     \b
-    For completion by the Tab key in bash (zsh and fish likewise), put into ~/.bashrc:
+    To complete commands with the Tab key in bash (or zsh, or fish), add this line to ~/.bashrc:
       eval "$(_WNN2HDL_COMPLETE=bash_source wnn2hdl)"
     """
 
@@ -74,9 +76,9 @@ def main() -> int:
     except click.ClickException as error:
         return _complain(error.format_message(), error.exit_code)
     except (KeyboardInterrupt, click.Abort):
-        return _complain("interrupted; nothing half-written was left", INTERRUPTED)
+        return _complain("interrupted; no half-written file is left", INTERRUPTED)
     except _Stopped as stopped:
-        return _complain(f"stopped by {stopped.signal.name}; nothing half-written was left", stopped.status)
+        return _complain(f"stopped by {stopped.signal.name}; no half-written file is left", stopped.status)
     except BrokenPipeError:
         # The reader of our output went away, as `| head` does; closing stops Python's own complaint at exit.
         sys.stderr.close()

@@ -1,9 +1,9 @@
 """Options that several commands share."""
 
 import shlex
-from collections.abc import Container
+from collections.abc import Callable, Container
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 from click.core import ParameterSource
@@ -11,28 +11,65 @@ from click.core import ParameterSource
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.raster import Reading
 
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+
 SAMPLE_IMAGES = 12
 SAMPLE_SIDE = 256
-"""The embedded default: this many landscapes of this many pixels squared."""
+"""The embedded default: this many landscapes, and the pixels on a side of each."""
 
 folder = click.Path(file_okay=False, path_type=Path)
 file = click.Path(dir_okay=False, path_type=Path)
 
-images_option = click.option("--images", type=folder, help="Folder of pictures; needs --masks.")
-masks_option = click.option(
-    "--masks", type=folder, help="Folder of masks of the same stems: 0 forest, another value deforested."
+images_option = click.option("--images", type=folder, help="Read pictures from this folder (needs --masks).")
+masks_option = click.option("--masks", type=folder, help="Read masks: 0 is forest, another value deforested.")
+bits_option = click.option(
+    "--bits",
+    metavar="R7,R6,...",
+    help="Read these bits.  [default: the 4 high bits each]",
 )
 share_option = click.option(
     "--share",
     type=FiniteRange(0, 1, min_open=True),
+    metavar="SHARE",
     default=0.5,
     show_default=True,
-    help="Share of a square's pixels that vote, drawn at random.",
+    help="Let this share of a square's pixels vote.",
 )
-seed_option = click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed.")
+seed_option = click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    metavar="N",
+    default=0,
+    show_default=True,
+    help="Set the random seed.",
+)
+scheduler_option = click.option(
+    "--scheduler", metavar="ADDRESS", help="Run on this Dask scheduler, as in tcp://host:8786."
+)
+
+
+def jobs_option(what: str) -> Callable[[Decorated], Decorated]:
+    """The option that says how much is done at a time; ``what``, in the plural, is worked on."""
+    return click.option(
+        "--jobs",
+        type=click.IntRange(min=1),
+        metavar="N",
+        help=f"Work on N {what} at a time.  [default: one per core]",
+    )
+
+
+def square_option(text: str) -> Callable[[Decorated], Decorated]:
+    """The option that gives the side of the squares in which pixels vote, with its help."""
+    return click.option("--square", type=click.IntRange(1, MAX_SIDE), metavar="SIDE", help=text)
+
+
+def output_option(text: str, *, is_file: bool = False, **settings: Any) -> Callable[[Decorated], Decorated]:
+    """The option that says where results go: a folder, or a file; with its help and click's settings."""
+    return click.option("-o", "--output", "output", type=file if is_file else folder, help=text, **settings)
 
 
 class BleachingType(click.ParamType[int | str]):
@@ -50,7 +87,7 @@ class BleachingType(click.ParamType[int | str]):
 
 
 def spoken_command(leave_out: Container[str]) -> str:
-    """What the user said to the running command, as a shell takes it from any folder: paths are whole.
+    """The running command as the user gave it, for a shell in any folder: paths are absolute.
 
     Args:
         leave_out: names of parameters, such as those of the output.
@@ -83,7 +120,8 @@ def labelled(
     """The labelled images that the options name; the embedded landscapes if they name none.
 
     Raises:
-        InputError: half of a pair of options, both pairs, or how to read what is not given.
+        InputError: half of a pair of options is given, or both pairs, or options that say how to read
+            pictures or masks that are not given.
     """
     pairs = {"--images and --masks": (images, masks), "--regions and --chips": (regions, chips)}
     given = [name for name, pair in pairs.items() if any(pair)]
@@ -91,7 +129,9 @@ def labelled(
         if not all(pairs[name]):
             raise InputError("these options go together", value=name, hint="give both")
     if len(given) == 2:
-        raise InputError("two sources of labelled pixels", value=" / ".join(given), hint="give one of them")
+        raise InputError(
+            "there are two sources of labelled pixels", value=" / ".join(given), hint="give one of them"
+        )
     if images and masks:
         return from_masks(images, masks, mask_format or MaskFormat(), reading)
     if mask_format is not None:

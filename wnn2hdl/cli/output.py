@@ -16,7 +16,7 @@ from wnn2hdl.cli.terminal import say
 Command = Callable[..., Any]
 
 json_option = click.option(
-    "--json", "as_json", is_flag=True, help="Print one JSON object on stdout and nothing else there."
+    "--json", "as_json", is_flag=True, help="Print one JSON object on stdout and nothing else."
 )
 
 
@@ -27,11 +27,11 @@ def emit(data: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 @contextmanager
 def progress() -> Iterator[Callable[[str, int, int], None]]:
-    """A live display on stderr of what is being done; none where nothing is reported.
+    """A live display on stderr of what is being done; nothing is shown if nothing is reported.
 
     Yields:
-        ``report(step, done, total)``: a step's name and how far it is. Each step has its own line; one that
-        falls back has begun anew and gets another.
+        ``report(step, done, total)``: a step's name and how far it is. Each step has its own line; a step
+        that falls back has started again and gets a new line.
     """
     columns = (TextColumn("{task.description:<28}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
     console = Console(stderr=True)

@@ -12,6 +12,12 @@ from wnn2hdl.raster import AlphaMeaning, Reading
 
 Command = Callable[..., None]
 
+READING = ("--bands", "--scale", "--alpha")
+"""How pictures are read, for the sections of a command's help."""
+
+MASKS = ("--palette", "--ignore")
+"""How masks are read, for the same."""
+
 
 class BandsType(click.ParamType[tuple[int, ...]]):
     """``3,2,1`` or ``1``: band numbers from 1."""
@@ -48,7 +54,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
         try:
             low, high = map(float, str(value).split(":"))
         except ValueError:
-            self.fail(f"{value!r} is no pair of numbers, as in 0:3000", param, ctx)
+            self.fail(f"{value!r} is not a pair of numbers, as in 0:3000", param, ctx)
         if not -float("inf") < low < high < float("inf"):
             self.fail(f"{value!r} does not rise from one number to another", param, ctx)
         return low, high
@@ -61,7 +67,7 @@ class ScaleType(click.ParamType[tuple[float, float]]):
 class CodesType(click.ParamType[tuple[int, ...]]):
     """``255`` or ``0,#ff00ff``: what stands for something in masks."""
 
-    name = "VALUE,…"
+    name = "VALUE,..."
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -72,33 +78,33 @@ class CodesType(click.ParamType[tuple[int, ...]]):
         try:
             return tuple(map(parse_code, str(value).split(",")))
         except ValueError:
-            self.fail(f"{value!r} is no list of whole numbers or colours, as in 255 or #ff00ff", param, ctx)
+            self.fail(
+                f"{value!r} is not a list of whole numbers or colours, as in 255 or #ff00ff", param, ctx
+            )
 
     def spoken(self, value: tuple[int, ...]) -> str:
         """The value as users write it."""
         return spoken_codes(value)
 
 
-bands_option = click.option(
-    "--bands", type=BandsType(), help="Bands of red, green, blue.  [default: what the file states]"
-)
+bands_option = click.option("--bands", type=BandsType(), help="Choose the bands of red, green and blue.")
 scale_option = click.option(
     "--scale",
     type=ScaleType(),
-    help="Values that become 0 and 255, in the file's units; needed beyond 8 bits.",
+    help="Map these values to 0 and 255; needed beyond 8 bits.",
 )
 alpha_option = click.option(
     "--alpha",
     type=click.Choice(get_args(AlphaMeaning)),
-    help="What a band marked alpha holds: pixels to leave out, or data.  [default: mask, if it looks so]",
+    help="Exclude pixels by alpha, or take it for data.",
 )
 palette_option = click.option(
     "--palette",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="JSON of classes and their colours or numbers in the masks, the background first.",
+    help="Read the masks' classes from this JSON file.",
 )
 ignore_option = click.option(
-    "--ignore", type=CodesType(), help="Values or colours of the masks that nobody labelled: left out."
+    "--ignore", type=CodesType(), help="Leave out pixels that have these mask values."
 )
 
 
@@ -123,7 +129,7 @@ def mask_options(command: Command) -> Command:
 
 
 def mask_format(palette: Path | None, ignore: tuple[int, ...] | None) -> MaskFormat | None:
-    """How masks are read, None if nothing is said; raises InputError as `Palette.read`."""
+    """How masks are read, None if no option says it; raises InputError as `Palette.read`."""
     if palette is None and ignore is None:
         return None
     return MaskFormat(Palette.read(palette) if palette else None, frozenset(ignore or ()))

@@ -1,4 +1,4 @@
-"""`report`: pages over builds, and the gate that says no to a build server."""
+"""`report`: pages about builds, and the gate for a build server."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ from wnn2hdl.build.folder import REPORT_HTML, is_build
 from wnn2hdl.build.reporting import open_entries
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file
+from wnn2hdl.cli.options import file, output_option
 from wnn2hdl.cli.output import emit, json_option
 from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import CheckError, InputError
@@ -37,7 +37,12 @@ INDEX = Path("index.html")
 _existing = click.Path(exists=True, path_type=Path)
 
 
-@app.command("report")
+SECTIONS = {
+    "Gate": ("--baseline", "--write-baseline", "--max-luts", "--min-accuracy", "--max-regress"),
+}
+
+
+@app.command("report", sections=SECTIONS)
 @click.argument("builds", nargs=-1, required=True, metavar="BUILD...", type=_existing)
 @click.option(
     "--format",
@@ -45,29 +50,39 @@ _existing = click.Path(exists=True, path_type=Path)
     type=click.Choice(get_args(Format)),
     default="html",
     show_default=True,
-    help="An index page of the builds, or what the gate found.",
+    help="Write an index page of the builds, or what the gate found.",
 )
-@click.option(
-    "-o",
-    "output",
-    type=file,
-    help="The file to write.  [default: index.html beside the first of several BUILDs; stdout]",
+@output_option(
+    "Write to this file.  [default: index.html beside the first of several BUILDs, else stdout]", is_file=True
 )
 @click.option(
     "--compare",
     nargs=2,
     type=_existing,
     metavar="A B",
-    help="Compare two of the BUILDs; two alone always are.",
+    help="Compare these two of the BUILDs.  [default: two alone]",
 )
-@click.option("--baseline", type=file, help="Gate: builds as they were, a file of --write-baseline.")
-@click.option("--write-baseline", "record", type=file, help="Record the builds as they are, and no gate.")
-@click.option("--max-luts", type=click.IntRange(min=0), help="Gate: LUTs that a build's target may take.")
-@click.option("--min-accuracy", type=FiniteRange(0, 1), help="Gate: least accuracy, as in 0.93.")
+@click.option("--baseline", type=file, help="Compare with this file of --write-baseline.")
+@click.option(
+    "--write-baseline", "record", type=file, help="Record the builds as they are, without checking them."
+)
+@click.option(
+    "--max-luts",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Fail if the whole target of a build takes more LUTs.",
+)
+@click.option(
+    "--min-accuracy",
+    type=FiniteRange(0, 1),
+    metavar="SHARE",
+    help="Fail if a build is less accurate, as in 0.93.",
+)
 @click.option(
     "--max-regress",
     type=click.IntRange(min=0),
-    help="Gate: LUTs by which a part may rise above the baseline.  [default: 0]",
+    metavar="N",
+    help="Let parts take this many LUTs more than the baseline.  [default: 0]",
 )
 @json_option
 def report_command(
@@ -84,30 +99,30 @@ def report_command(
 ) -> None:
     """Show BUILDs on pages, compare two, and fail where one got worse.
 
-    Each build has a page of its own, report.html, which is written if it is missing. What is no build among
-    the BUILDs is passed over, so that build/* will do.
+    Each build has its own page, report.html, which is written if it is missing. Among the BUILDs, whatever is
+    not a build is skipped, so build/* can be given.
 
-    The gate works where a limit, a baseline or a format for it is given. It ends with status 1 if a build
-    is not proved, was changed after the proof or breaks a limit; and with a baseline if a part takes more
-    LUTs, the accuracy is lower, or a build or part is known to one side only.
+    The gate runs if a limit, a baseline or one of its formats is given. It exits with status 1 if a build is
+    not proved, was changed after the proof or breaks a limit; with a baseline, also if a part takes more
+    LUTs, the accuracy is lower, or a build or part is missing on one side.
 
     \b
     Examples:
-      wnn2hdl report build/mine
       wnn2hdl report build/before build/after -o comparison.html
-      wnn2hdl report build/* --write-baseline baseline.json
       wnn2hdl report build/* --baseline baseline.json --max-luts 21 --format markdown
     """
     limited = baseline is not None or max_luts is not None or min_accuracy is not None
     if record is not None and (limited or form != "html"):
         raise InputError(
-            "--write-baseline takes builds as they are", hint="run the gate in a command of its own"
+            "--write-baseline takes builds as they are", hint="run the gate in a separate command"
         )
     if max_regress is not None and baseline is None:
         raise InputError("--max-regress is measured from a baseline", hint="give --baseline too")
     if as_json and form != "html" and output is None:
         raise InputError(
-            "two outputs on stdout", value=f"--json and --format {form}", hint="name a file with -o"
+            "two outputs cannot both go to stdout",
+            value=f"--json and --format {form}",
+            hint="name a file with -o",
         )
     folders = _folders(builds)
     if form == "html" and output is None and record is None and len(folders) > 1:
@@ -146,13 +161,13 @@ def report_command(
 
 
 def _folders(paths: Sequence[Path]) -> list[Path]:
-    """The builds among what was given; what is passed over is told."""
+    """The builds among what was given; what is skipped is reported."""
     folders = [path for path in paths if is_build(path)]
     others = " ".join(str(path) for path in paths if path not in folders)
     if not folders:
-        raise InputError("no build among these", value=others, hint="see `wnn2hdl compile`")
+        raise InputError("none of these is a build", value=others, hint="see `wnn2hdl compile`")
     if others:
-        say(f"wnn2hdl: passed over, since it is no build: {others}", error=True)
+        say(f"wnn2hdl: skipped, since it is not a build: {others}", error=True)
     return folders
 
 
@@ -160,7 +175,7 @@ def _require_own(index: Path) -> None:
     """Keep a page that another command or a person put where an index would go."""
     if index.is_file() and not is_index(index.read_text(encoding="utf-8", errors="replace")):
         raise InputError(
-            "there is a page that `wnn2hdl report` did not make",
+            "a page that `wnn2hdl report` did not write is in the way",
             value=index,
             hint="name another file, or this one, with -o",
         )

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import SAMPLE_IMAGES, SAMPLE_SIDE, folder, seed_option
+from wnn2hdl.cli.options import SAMPLE_IMAGES, SAMPLE_SIDE, output_option, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.samples.flight import FULL_MAP, make_flight, write_flight
@@ -16,39 +16,35 @@ FRAMES = 35
 
 
 @app.command("samples")
-@click.option("--flight", is_flag=True, help="Write a flight over a map instead.")
+@click.option("--flight", is_flag=True, help="Write a flight over a map instead of landscapes.")
 @click.option(
-    "--images",
-    "count",
+    "--count",
     type=click.IntRange(min=1),
-    help=f"How many landscapes, or frames.  [default: {SAMPLE_IMAGES}; of a flight {FRAMES}]",
+    metavar="N",
+    help=f"Write this many landscapes, or frames.  [default: {SAMPLE_IMAGES}; of a flight {FRAMES}]",
 )
 @click.option(
     "--side",
     type=click.IntRange(min=1),
-    help="Height and width in pixels of a landscape, or of the flight's map.  "
+    metavar="PIXELS",
+    help="Make landscapes, or the flight's map, this high and wide.  "
     f"[default: {SAMPLE_SIDE}; of a map {FULL_MAP[0]} and {FULL_MAP[1]}]",
 )
 @seed_option
-@click.option("-o", "output", type=folder, required=True, help="The folder to write into.")
+@output_option("Write into this folder.", required=True)
 @json_option
 def samples_command(
     flight: bool, count: int | None, side: int | None, seed: int, output: Path, as_json: bool
 ) -> None:
-    """Write generated landscapes, with masks of two classes and of all kinds of ground.
+    """Write generated landscapes with masks of two classes and of all kinds of ground, or a flight.
 
-    Or a flight over generated country: a map of half a metre a pixel, frames in another season's light,
-    tilted by wind, and their poses, exact to a centimetre. The full map takes a minute and 1 GB of memory.
+    The flight leads over generated country: a map of 0.5 m per pixel, frames in the light of another season,
+    tilted by wind, and their poses, exact to 1 cm. The full map takes a minute and 1 GB of memory.
 
     \b
     Examples:
       wnn2hdl samples -o build/samples
-      wnn2hdl train --images build/samples/images --masks build/samples/masks -o build/model.json
-      wnn2hdl train --images build/samples/images --masks build/samples/kinds \\
-                    --palette build/samples/palette.json -o build/kinds.json
-      wnn2hdl samples --flight --side 1500 --images 12 -o build/country
-      wnn2hdl locate --map build/country/map.tif --frames build/country/frames \\
-                     --poses build/country/poses.csv --camera build/country/camera.toml
+      wnn2hdl samples --flight --side 1500 --count 12 -o build/country
     """
     with progress() as report:
         if flight:

@@ -28,14 +28,16 @@ from wnn2hdl.apps.sweep import (
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     BleachingType,
+    bits_option,
     folder,
     images_option,
     labelled,
     masks_option,
+    scheduler_option,
     seed_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.pictures import mask_options, reading_options
+from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import MaskFormat
@@ -58,66 +60,101 @@ class RangeType(click.ParamType[tuple[int, ...] | str]):
         low, _, high = str(value).partition("..")
         ends = (low, high or low)
         if not all(end.isdecimal() for end in ends) or not 1 <= int(ends[0]) <= int(ends[1]):
-            self.fail(f"{value!r} is no range of numbers from 1 on, as in 2..12", param, ctx)
+            self.fail(f"{value!r} is not a range of whole numbers from 1, as in 2..12", param, ctx)
         return tuple(range(int(ends[0]), int(ends[1]) + 1))
 
 
-@app.command("sweep")
+SECTIONS = {
+    "Images and labels": ("--images", "--masks", *MASKS, *READING),
+    "Trials": (
+        "--address-bits",
+        "--rams",
+        "--trials",
+        "--bits",
+        "--pixels",
+        "--bleach",
+        "--mode",
+        "--care-min",
+        "--beyond-grid",
+    ),
+    "A model of the sweep": ("--best", "--trial", "--results"),
+}
+
+
+@app.command("sweep", sections=SECTIONS)
 @images_option
 @masks_option
 @mask_options
 @reading_options
 @click.option(
-    "--n", "address_bits", type=RangeType(), default="2..12", show_default=True, help="Address bits."
+    "--address-bits",
+    type=RangeType(),
+    default="2..12",
+    show_default=True,
+    help="Try these address bits.",
 )
-@click.option("--k", "rams", type=RangeType(), default="2..20", show_default=True, help="RAMs of a class.")
 @click.option(
-    "--trials", type=click.IntRange(min=1), default=10, show_default=True, help="Of each architecture."
+    "--rams",
+    type=RangeType(),
+    default="2..20",
+    show_default=True,
+    help="Try these numbers of RAMs.",
 )
 @click.option(
-    "--bits", metavar="R7,R6,...", help="Pixel bits to read; by default the 4 high bits of R, G, B."
+    "--trials",
+    type=click.IntRange(min=1),
+    metavar="N",
+    default=10,
+    show_default=True,
+    help="Train each architecture N times.",
 )
+@bits_option
 @click.option(
     "--pixels",
     type=click.IntRange(min=1),
+    metavar="N",
     default=TRAINING_PIXELS,
     show_default=True,
-    help="Training pixels, spread evenly over images and classes.",
+    help="Train on N pixels.",
 )
 @click.option(
     "--bleach",
     type=BleachingType(),
     default="auto",
     show_default=True,
-    help="Bleaching threshold; auto cross-validates it by image.",
+    help="Set the bleaching threshold, or cross-validate it.",
 )
 @click.option(
     "--mode",
     type=click.Choice(["exact", "domain"]),
     default="domain",
     show_default=True,
-    help="Circuits equal to the classifier on every code, or on those of the training images.",
+    help="Equal the classifier on every code, or on those of the training images.",
 )
 @click.option(
     "--care-min",
     type=click.IntRange(min=1),
+    metavar="N",
     default=1,
     show_default=True,
-    help="How often a code must occur in the training images to be cared for.",
+    help="Care for codes that occur this often.",
 )
 @seed_option
-@click.option("--search", is_flag=True, help="Also search beyond the grid with NSGA-II; as many trials.")
-@click.option("--scheduler", metavar="ADDRESS", help="Run on this Dask scheduler, as in tcp://host:8786.")
-@click.option("--best", is_flag=True, help="Write the model of the best trial of the chosen architecture.")
+@click.option("--beyond-grid", is_flag=True, help="Also search beyond the grid, by NSGA-II.")
+@scheduler_option
+@click.option("--best", is_flag=True, help="Write the chosen architecture's best model.")
 @click.option("--trial", "name", metavar="ID", help="Write the model of this trial, as in n4-k16-t3.")
 @click.option(
-    "--results", type=folder, help=f"With --best or --trial: the sweep's folder.  [default: {DEFAULT_FOLDER}]"
+    "--results",
+    type=folder,
+    help=f"Take the model from this sweep.  [default: {DEFAULT_FOLDER}]",
 )
 @click.option(
     "-o",
+    "--output",
     "output",
     type=click.Path(path_type=Path),
-    help=f"The sweep's folder, or with --best or --trial the model file.  [default: {DEFAULT_FOLDER}]",
+    help=f"Write into this folder, or to this model file.  [default: {DEFAULT_FOLDER}]",
 )
 @json_option
 def sweep_command(
@@ -134,7 +171,7 @@ def sweep_command(
     mode: str,
     care_min: int,
     seed: int,
-    search: bool,
+    beyond_grid: bool,
     scheduler: str | None,
     best: bool,
     name: str | None,
@@ -144,14 +181,13 @@ def sweep_command(
 ) -> None:
     """Train and cost every architecture of a grid, and choose one.
 
-    Results are kept as they come: the same command goes on where a killed one stopped. Half of the images
-    are trained on, the others are held out.
+    Results are kept as they come: the same command continues where an interrupted one stopped. Half of the
+    images are trained on, the others are held out.
 
     \b
     Examples:
-      wnn2hdl sweep --images IMAGES --masks MASKS -o build/sweep
-      wnn2hdl sweep --n 3..5 --k 8..16 --trials 20 -o build/sweep
-      wnn2hdl sweep --scheduler tcp://host:8786 --images IMAGES --masks MASKS -o build/sweep
+      wnn2hdl sweep --images IMAGES --masks MASKS --address-bits 3..5 --rams 8..16 -o build/sweep
+      wnn2hdl sweep --images IMAGES --masks MASKS --best --results build/sweep -o model.json
     """
     where, model_file = _places(output, results, best=best, name=name)
     encoder = parse_bits(bits) if bits else high_bits()
@@ -170,7 +206,7 @@ def sweep_command(
             _write_model(sets, find_trial(plan, where, name), model_file, as_json=as_json)
             return
         started = time.perf_counter()
-        outcome = run_sweep(sets, plan, where, run, report, search=search)
+        outcome = run_sweep(sets, plan, where, run, report, search=beyond_grid)
         seconds = time.perf_counter() - started
     if best:
         if outcome.decision is None:
@@ -197,7 +233,7 @@ def _places(output: Path | None, results: Path | None, *, best: bool, name: str 
             raise InputError("--results goes with --best or --trial", hint="name the sweep's folder with -o")
         return output or DEFAULT_FOLDER, Path()
     if output is None:
-        raise InputError("there is no place for the model", hint="name its file with -o MODEL.json")
+        raise InputError("the model has no file to go to", hint="name its file with -o MODEL.json")
     if output.is_dir():
         raise InputError("the model file is a folder", value=output, hint="name a file, as in -o MODEL.json")
     return results or DEFAULT_FOLDER, output
@@ -212,7 +248,7 @@ def _write_model(sets: PixelSets, trial: Trial, path: Path, *, as_json: bool) ->
     replace(rebuild(sets, trial), colours=seen_colours(sets)).save(path)
     text = (
         f"{path}: trial {trial.name}, accuracy {record.accuracy:.4f} on the held-out images, "
-        f"{record.luts} LUTs a pixel, bleaching threshold {record.bleaching}, {record.status}"
+        f"{record.luts} LUTs per pixel, bleaching threshold {record.bleaching}, {record.status}"
     )
     emit(record.to_json() | {"model": str(path)}, text, as_json=as_json)
 
@@ -222,7 +258,8 @@ def _summary(outcome: Outcome, where: Path) -> str:
     lines = [
         f"{where}: {data['trials']:,} trials, {data['saturated']:,} saturated, {data['failed']:,} failed",
         *(
-            f"peak n = {x['n']}, k = {x['k']}: mean accuracy {x['accuracy']:.4f}, {x['luts']:.1f} LUTs"
+            f"peak at {x['address_bits']} address bits, {x['rams']} RAMs: "
+            f"mean accuracy {x['accuracy']:.4f}, {x['luts']:.1f} LUTs"
             for x in data["peaks"][:3]
         ),
         data["reasons"],

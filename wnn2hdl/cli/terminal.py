@@ -37,7 +37,7 @@ def say(text: str, *, error: bool = False) -> None:
     Where the reader has gone away, as `| head` does, nothing is printed from then on: what a command still
     has to do, and its exit status, do not depend on it.
     """
-    # Not by click, which would open an ASCII stream anew as UTF-8.
+    # Not by click, which would reopen an ASCII stream as UTF-8.
     stream = sys.stderr if error else sys.stdout
     try:
         stream.write(f"{text}\n")

@@ -14,7 +14,7 @@ CLASSES = ("forest", "deforested")
 """The two classes of the reference design; the first is the background."""
 
 NATURAL = ("river", "water")
-"""Classes other than the background that are no deforestation: what they cover was never felled."""
+"""Classes other than the background that are not deforestation: what they cover was never felled."""
 
 
 def cleared_classes(names: Sequence[str]) -> tuple[int, ...]:

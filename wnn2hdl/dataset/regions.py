@@ -28,8 +28,10 @@ class Region:
     Attributes:
         row: its line in the file.
         label: class index.
-        x: left edge in pixels; likewise ``y`` the top edge, downwards.
-        width: pixels; likewise ``height``.
+        x: left edge in pixels.
+        y: top edge in pixels, downwards.
+        width: pixels.
+        height: pixels.
     """
 
     row: int
@@ -155,13 +157,13 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     except OSError as error:
         raise InputError("cannot read the file of regions", value=f"{path} ({error.strerror})") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError("the file of regions is no CSV text", value=f"{path} ({error})") from error
+        raise InputError("the file of regions is not CSV text", value=f"{path} ({error})") from error
 
 
 def _whole_number(cells: dict[str, str], name: str, where: str) -> int:
     text = cells[name]
     if not (text.isascii() and text.isdigit() and len(text) <= 9):
-        raise InputError(f"{where}: {name} is no whole number of pixels", value=repr(text))
+        raise InputError(f"{where}: {name} is not a whole number of pixels", value=repr(text))
     return int(text)
 
 

@@ -50,9 +50,9 @@ def _require_one_foreground(foregrounds: dict[int, Path]) -> None:
     if len(foregrounds) > 1:
         (one, first), (other, second) = list(foregrounds.items())[:2]
         raise InputError(
-            f"masks of one folder hold {one} and {other}, and do not say which of them is deforested",
+            f"masks of one folder hold {one} and {other}, without saying which of them is deforested",
             value=f"{first} and {second}",
-            hint="name what nobody labelled with --ignore VALUE, or give a palette file of the classes",
+            hint="name unlabelled values with --ignore VALUE, or give a palette file of the classes",
         )
 
 

@@ -36,7 +36,7 @@ def read_table(path: Path, label: str) -> FeatureTable:
 
     Raises:
         InputError: the file cannot be read, has no such column or no rows, names a column twice, or a row
-            has another length, no label, or a feature that is no finite number.
+            has another length, no label, or a feature that is not a finite number.
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as stream:
@@ -58,7 +58,7 @@ def _table(lines: Iterator[list[str]], path: Path, label: str) -> FeatureTable:
             hint=f"it has {', '.join(columns[:20])}",
         )
     if len(set(columns)) != len(columns) or len(columns) < 2:
-        raise InputError("a table needs features, each with a name of its own", value=path)
+        raise InputError("a table needs features, each with its own name", value=path)
     place = columns.index(label)
     labels, rows = [], []
     for number, row in enumerate(lines, 1):
@@ -82,7 +82,7 @@ def _numbers(texts: list[str], where: str) -> NDArray[np.float64]:
             wrong = True
         if wrong:
             raise InputError(
-                "a feature is no finite number",
+                "a feature is not a finite number",
                 value=f"{text[:40]!r} in {where}",
                 hint="fill or drop such rows",
             )

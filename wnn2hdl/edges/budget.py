@@ -30,7 +30,7 @@ RANDOM_STARTS = 3
 """Random labellings that each chart starts from, beside one by the rows' weights."""
 
 CAUTION = (0.0, 1e-4, 1e-3, 1e-2)
-"""What leaving the patterns at hand costs in F1 a window, in turn: gains hold for small changes only."""
+"""What leaving the patterns at hand costs in F1 per window, in turn: gains hold for small changes only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +114,7 @@ def learned_under_budget(
         seed: decides the search's starts.
 
     Raises:
-        InputError: another number of LUTs, a count that no filter of so many LUTs has, or no edge in any
+        InputError: another number of LUTs, a count that no filter of this many LUTs has, or no edge in any
             picture.
     """
     if not 1 <= luts <= MOST_LUTS:
@@ -138,7 +138,7 @@ def learned_under_budget(
             best = refined
     if best is None:
         raise InputError(
-            f"no edge filter of {luts} LUTs was found that holds so many patterns",
+            f"no edge filter of {luts} LUTs with this number of patterns was found",
             value=count,
             hint="ask for more LUTs or another number of patterns",
         )
@@ -152,7 +152,7 @@ def _refine(
     weights: NDArray[np.float64],
     count: int | None,
 ) -> tuple[float, NDArray[np.bool_]] | None:
-    """Take the gains anew at each filter found, until no step raises the true F1."""
+    """Take the gains again at each filter found, until no step raises the true F1."""
     reached = chart.alternate(label, weights, count)
     if reached is None:
         return None
@@ -195,7 +195,7 @@ def _weights(evidence: Evidence, patterns: NDArray[np.bool_]) -> NDArray[np.floa
 
 
 def _charts(wires: int) -> Iterator[_Chart]:
-    """Every way to share the nine bits out; A and B overlap as far as they can, which excludes nothing."""
+    """Every way to distribute the nine bits; A and B overlap as far as they can, which excludes nothing."""
     bits = codes_to_bits(np.arange(WINDOW_CODES), WINDOW_BITS)
     for b in combinations(range(WINDOW_BITS), LUT_INPUTS - wires):
         rest = tuple(x for x in range(WINDOW_BITS) if x not in b)

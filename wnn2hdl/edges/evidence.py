@@ -1,4 +1,4 @@
-"""What pictures say about every edge pattern: enough to give the F1 of any set of them anew."""
+"""What pictures say about every edge pattern: enough to compute the F1 of any set of them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -53,13 +53,15 @@ def from_file(path: Path) -> EdgeFilter:
     rows from top to bottom, columns from left to right, so the first character is bit 0.
 
     Raises:
-        InputError: the file cannot be read, is no such list, is empty, or a pattern is none of these.
+        InputError: the file cannot be read, is not such a list, is empty, or a pattern is something else.
     """
     data = read_json_value(path, "a file of edge patterns")
     listed = data.get("patterns") if isinstance(data, dict) else data
     if not isinstance(listed, list) or not listed:
         raise InputError(
-            "the file holds no list of edge patterns", value=path, hint="write a JSON list such as [56, 504]"
+            "the file does not hold a list of edge patterns",
+            value=path,
+            hint="write a JSON list such as [56, 504]",
         )
     patterns = np.zeros(WINDOW_CODES, dtype=np.bool_)
     for number, entry in enumerate(listed, start=1):
@@ -74,7 +76,7 @@ def _code(entry: Any, where: str) -> int:
     text = "".join(row if isinstance(row, str) else "?" for row in rows)
     if len(text) != WINDOW_BITS or not set(text) <= {"0", "1"}:
         raise InputError(
-            f"{where} is no 3x3 pattern",
+            f"{where} is not a 3x3 pattern",
             value=json.dumps(entry)[:_LONGEST_SHOWN],
             hint=f"write a code from 0 to {WINDOW_CODES - 1}, nine 0s and 1s, or three rows of three",
         )

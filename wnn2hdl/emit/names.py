@@ -15,7 +15,7 @@ class Names:
     """The names of a module's bits, and the widths of what is named.
 
     A word that a cell drives takes the name of a net of the same bits: of an output port, else of a net that
-    the component named, else one of its own. Bits of input ports to which the component gave a name, as in
+    the component named, else a new one. Bits of input ports to which the component gave a name, as in
     ``R7``, go by that name. Names that Verilog cannot have, or has for something else, are changed.
 
     Attributes:
@@ -35,7 +35,7 @@ class Names:
             if cell.is_instance:
                 self.instances[cell] = self._plain(cell.name)
         self._by_bits: dict[BitVector, str] = {}
-        # A name that Amaranth numbered, as in ``total$7``, only where there is no other.
+        # A name that Amaranth numbered, as in ``total$7``, is used only if there is no other.
         for name in sorted(module.nets, key=lambda name: "$" in name):
             if not module.nets[name].hidden:
                 self._by_bits.setdefault(module.nets[name].bits, name)
@@ -85,7 +85,7 @@ class Names:
         self._references |= {bit: (name, position, 1) for position, bit in enumerate(bits)}
 
     def _new(self, wanted: str, width: int) -> str:
-        """A name for a net of so many bits."""
+        """A name for a net of this many bits."""
         plain = self._plain(wanted)
         self.widths[plain] = width
         return plain

@@ -47,9 +47,9 @@ class Cell:
 
     Attributes:
         name: of the instance.
-        kind: ``$and`` and the like, or the name of the other module.
+        kind: an operator such as ``$and``, or the name of the other module.
         parameters: as Yosys writes them: numbers as binary digits, the most significant first.
-        attributes: likewise; text stands as it is.
+        attributes: in the same form; text is kept as it is.
         inputs: the bits on each input pin.
         outputs: the bits on each output pin.
     """

@@ -14,7 +14,7 @@ Arrays = Mapping[str, NDArray[np.bool_]]
 
 
 def vectors(component: Component, inputs: Arrays, expected: Arrays) -> str:
-    """The vectors of a testbench, in the format of ``$readmemh``: one hexadecimal number a line.
+    """The vectors of a testbench, in the format of ``$readmemh``: one hexadecimal number per line.
 
     Args:
         component: the circuit under test.
@@ -54,7 +54,7 @@ def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: 
         name: its module.
         count: how many vectors the file holds.
         vectors_file: name of the file with the `vectors`, without a folder.
-        sources: names of the Verilog files of the circuit, for the comment that tells how to run it.
+        sources: names of the Verilog files of the circuit, for the comment that says how to run it.
     """
     inputs, outputs = port_widths(part)
     latency = part.latency

@@ -30,9 +30,11 @@ def high_bits(per_channel: int = 4) -> BitSelect:
     The order is R7, R6, …, then G7, …, then B7, …: code bit 0 is R7.
 
     Raises:
-        InputError: fewer than 1 or more than 8 bits a channel.
+        InputError: fewer than 1 or more than 8 bits per channel.
     """
     if not 1 <= per_channel <= CHANNEL_BITS:
-        raise InputError("no such number of bits a channel", value=per_channel, hint="choose 1 to 8")
+        raise InputError(
+            "a channel does not have this number of bits", value=per_channel, hint="choose 1 to 8"
+        )
     tops = range(CHANNEL_BITS - 1, CHANNEL_BITS - 1 - per_channel, -1)
     return BitSelect(tuple(f"{channel}{bit}" for channel in CHANNELS for bit in tops))

@@ -29,7 +29,7 @@ def fit_thermometer(features: ArrayLike, bits: int) -> Thermometer:
             "a feature is not finite", value="NaN or infinity", hint="drop or fill such samples first"
         )
     if bits < 1:
-        raise InputError("no such number of bits a feature", value=bits, hint="choose at least 1")
+        raise InputError("a feature cannot have this number of bits", value=bits, hint="choose at least 1")
     thresholds = tuple(tuple(_levels(column, bits).tolist()) for column in columns.T)
     if not any(thresholds):
         raise InputError(

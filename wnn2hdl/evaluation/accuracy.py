@@ -22,7 +22,7 @@ class Evaluation:
         classes: class names, the background first.
         confusion: int64 ``[images, classes, classes]``, pixels by true class (rows) and answer (columns).
         covered: int64 ``[images]``, pixels whose colours the classifier knows.
-        left_out: int64 ``[images]``, pixels that are not labelled, no data, or beside such.
+        left_out: int64 ``[images]``, pixels that are unlabelled, without data, or beside one without data.
     """
 
     names: tuple[str, ...]
@@ -65,7 +65,7 @@ class Squares:
 
 
 def require_same_classes(classes: tuple[str, ...], dataset: Dataset) -> None:
-    """Refuse labels of other classes than a model's, or in another order; raises InputError."""
+    """Refuse labels whose classes are not the model's, or in another order; raises InputError."""
     if classes != dataset.classes:
         raise InputError(
             "the model and the masks have different classes",
@@ -80,12 +80,12 @@ def evaluate(
     """Compare a classifier's answers with the labels of images.
 
     A classifier that looks at neighbours sees a picture's borders repeated outwards, and is not asked about
-    pixels beside some that are no data.
+    pixels beside one without data.
 
     Args:
         classifier: what answers.
         dataset: the images; one is in memory at a time.
-        progress: told of each image read.
+        progress: called with each image read.
         squares: let the pixels of squares vote, those that are data; None for each pixel by itself.
 
     Raises:

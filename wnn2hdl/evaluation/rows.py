@@ -13,7 +13,7 @@ from wnn2hdl.ir.models import ClassifierModel, LogicModel, load_model
 VectorClassifier = WisardModel | ClassifierModel
 
 SCALER = "scaler"
-"""What an imported model notes of how its features were scaled (see `wnn2hdl.importers.dwn`)."""
+"""How an imported model says that its features were scaled (see `wnn2hdl.importers.dwn`)."""
 
 
 def load_vector_classifier(path: Path) -> VectorClassifier:
@@ -44,19 +44,19 @@ def scaled(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> ND
     if known is None:
         if raw:
             raise InputError(
-                "the model notes no scaling", value="--raw", hint="scale the table and leave it out"
+                "the model records no scaling", value="--raw", hint="scale the table and leave --raw out"
             )
         return table.features
     if raw is None:
         raise InputError(
-            "the model's features are scaled, and the table does not say whether its are",
+            "the model's features are scaled, and it is not said whether the table's are",
             hint="give --scaled if they are, --raw if they are not",
         )
     if not raw:
         return table.features
     mean, scale = np.asarray(known["mean"]), np.asarray(known["scale"])
     if mean.shape != scale.shape or mean.shape != table.features.shape[1:]:
-        raise InputError("the noted scaling is of another number of features", value=len(mean))
+        raise InputError("the recorded scaling is for another number of features", value=len(mean))
     return np.asarray((table.features - mean) / scale)
 
 

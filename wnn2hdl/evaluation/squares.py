@@ -44,7 +44,7 @@ def vote(
         seed: at least 0; its lowest 64 bits are used.
         count: number of classes.
         row: the whole picture's row where the window starts, a multiple of ``side``.
-        column: likewise its column.
+        column: its column where the window starts, a multiple of ``side``.
 
     Returns:
         uint8 ``[height, width]``.
@@ -94,7 +94,7 @@ class _Strip:
         if self._valid is not None:
             numbers[~self._valid] = np.iinfo(np.uint32).max
         last = np.maximum(wanted - 1, 0)
-        # As quick as a partition by one rank (1.9 and 1.7 thousand million numbers a second, measured), and
+        # As quick as a partition by one rank (1.9 and 1.7 thousand million numbers per second, measured), and
         # ranks differ between squares with invalid pixels.
         limits = np.take_along_axis(np.sort(numbers, axis=1), last[:, np.newaxis], axis=1)
         counted = numbers <= limits

@@ -1,4 +1,4 @@
-"""Pictures tagged as a whole: does the share called deforested tell cleared land from forest?"""
+"""Pictures tagged as a whole: does the share called deforested separate cleared land from forest?"""
 
 import csv
 from collections import Counter
@@ -35,7 +35,7 @@ CLEARED = frozenset(
         "slash_burn",
     }
 )
-"""Tags of land that is forest no more; spelt as the Planet chips are tagged."""
+"""Tags of land that is no longer forest, spelt as on the Planet chips."""
 
 RULE = (
     "negative: tagged clear and primary alone; positive: tagged clear and any of "
@@ -84,7 +84,7 @@ def evaluate_tagged(
         chips: the folder of pictures.
         tags: a CSV file with the columns `COLUMNS`: the picture's stem, and its tags with blanks between.
         seed: of the bootstrap.
-        progress: told of each picture read.
+        progress: called with each picture read.
         reading: how pictures are read.
 
     Raises:
@@ -100,7 +100,9 @@ def evaluate_tagged(
     for name in reported(cleared, "classifying chips", len(cleared), progress):
         if name not in files:
             raise InputError(
-                f"no picture of this name in {chips}", value=name, hint="correct the file of tags"
+                f"there is no picture of this name in {chips}",
+                value=name,
+                hint="correct the file of tags",
             )
         picture = read_picture(files[name], reading)
         answers = classifier.classify(with_halo(picture.pixels, classifier.halo))
@@ -155,7 +157,7 @@ def read_tags(path: Path) -> dict[str, frozenset[str]]:
     except OSError as error:
         raise InputError("cannot read the file of tags", value=f"{path} ({error.strerror})") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError("the file of tags is no CSV text", value=f"{path} ({error})") from error
+        raise InputError("the file of tags is not CSV text", value=f"{path} ({error})") from error
     if not rows:
         raise InputError("the file of tags has no rows", value=path, hint="add the tags of a picture")
     return rows

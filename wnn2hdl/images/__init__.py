@@ -1,4 +1,4 @@
-"""Pictures and masks to arrays and back; nothing about a file's meaning is guessed in silence."""
+"""Pictures and masks to arrays and back; no meaning of a file is guessed silently."""
 
 from wnn2hdl.images.codes import parse_code, spoken_codes
 from wnn2hdl.images.folders import by_stem, list_images, pair_masks

@@ -1,4 +1,4 @@
-"""What stands in a mask for a class, as one number: a value of its only band, or a colour."""
+"""The code of a class in a mask, as one number: a value of its only band, or a colour."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -62,13 +62,13 @@ def value_codes(values: NDArray[Any], valid: NDArray[np.bool_], path: Path) -> N
     """Codes of the values of a single band, int64 shaped as ``values``; 0 where they are not valid.
 
     Raises:
-        InputError: a valid value is no whole number, or too large for a code.
+        InputError: a valid value is not a whole number, or too large for a code.
     """
     numbers = np.where(valid, values, 0)
     wrong = (numbers != np.rint(numbers)) | (np.abs(numbers.astype(np.float64)) >= _COLOUR)
     if wrong.any():
         raise InputError(
-            f"{np.count_nonzero(wrong)} values of the mask stand for no class",
+            f"{np.count_nonzero(wrong)} values of the mask do not stand for a class",
             value=f"{path} ({numbers[wrong][0]:g})",
             hint="a mask has whole numbers, one for each class",
         )

@@ -1,4 +1,4 @@
-"""Masks to labels: which class each pixel is of, and which pixels nobody labelled."""
+"""Masks to labels: the class of each pixel, and which pixels are unlabelled."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +15,10 @@ from wnn2hdl.raster.formats import JPEG
 from wnn2hdl.raster.reading import stored_orientation
 
 UNLABELLED = MOST_CLASSES
-"""The label of a pixel that is of no class."""
+"""The label of a pixel without a class."""
 
 _FREQUENT = 0.001
-"""Share of a mask's labelled pixels above which a value is no slip of a brush or of a smoothed outline."""
+"""Share of a mask's labelled pixels above which a value is not a slip of a brush or of a smoothed outline."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class MaskFormat:
 
     Attributes:
         palette: what stands for each class; None for masks of two classes, 0 and another value.
-        ignored: codes of pixels that nobody labelled, besides those of the palette.
+        ignored: codes of unlabelled pixels, in addition to those of the palette.
     """
 
     palette: Palette | None = None
@@ -50,7 +50,7 @@ class Labels:
 def read_labels(path: Path, picture: Path, shape: tuple[int, int], masks: MaskFormat) -> Labels:
     """Read a mask.
 
-    A pixel is unlabelled where the file says so (nodata, a mask of its own, alpha, a transparent entry of its
+    A pixel is unlabelled where the file says so (nodata, its own mask, alpha, a transparent entry of its
     colour table), and where it has an ignored code. Without a palette 0 or black is the first class, forest,
     and the one other value the second, deforested.
 
@@ -70,7 +70,9 @@ def read_labels(path: Path, picture: Path, shape: tuple[int, int], masks: MaskFo
     kind = format_of(path)
     if kind == JPEG:
         raise InputError(
-            "a JPEG cannot be a mask, its compression smears labels", value=path, hint="save the mask as PNG"
+            "a JPEG cannot be a mask, because its compression smears labels",
+            value=path,
+            hint="save the mask as PNG",
         )
     codes, labelled = _codes(path, kind, checked=masks.palette is None)
     if codes.shape != shape:
@@ -82,7 +84,7 @@ def read_labels(path: Path, picture: Path, shape: tuple[int, int], masks: MaskFo
     turns = stored_orientation(picture), stored_orientation(path)
     if turns[0] != turns[1]:
         raise InputError(
-            "the mask and its picture say that they are to be turned in different ways",
+            "the mask and its picture have different orientations",
             value=f"{path} (orientation {turns[1]}), {picture} ({turns[0]})",
             hint="save both upright",
         )
@@ -106,7 +108,7 @@ def _codes(path: Path, kind: str, *, checked: bool) -> tuple[NDArray[np.int64], 
     """
     head = plain_head(path, kind)
     if head is not None:
-        colours, valid = decode(path, alpha="mask")
+        colours, valid = decode(path, alpha="exclude")
         codes, labelled = colour_codes(colours), np.ones(colours.shape[:2], dtype=np.bool_)
         labelled = labelled if valid is None else valid
         index = indices(path)
@@ -116,7 +118,7 @@ def _codes(path: Path, kind: str, *, checked: bool) -> tuple[NDArray[np.int64], 
         codes, labelled, index = _stored_codes(stored, path)
     if checked and index is not None and ((index == 0) != (codes == 0))[labelled].any():
         raise InputError(
-            "the mask's palette does not give black, and black alone, to index 0",
+            "the mask's palette must have black at index 0, and nowhere else",
             value=path,
             hint="save it as a grey picture, 0 forest and 255 deforested, or give a palette file",
         )
@@ -135,7 +137,7 @@ def _stored_codes(
         return value_codes(samples[0], stored.valid, path), stored.valid, None
     if samples.dtype != np.uint8:
         raise InputError(
-            "the mask's colours have more than 8 bits", value=path, hint="save it with 8 bits a channel"
+            "the mask's colours have more than 8 bits", value=path, hint="save it with 8 bits per channel"
         )
     return colour_codes(np.moveaxis(samples, 0, 2)), stored.valid, None
 
@@ -148,9 +150,9 @@ def _foreground(codes: NDArray[np.int64], path: Path) -> int | None:
     if len(others) > 1 or (others < 0).any():
         raise InputError(
             f"the mask holds {', '.join(map(spoken, others[:5].tolist()))}{' …' if len(others) > 5 else ''} "
-            "besides 0, and does not say which of them are deforested",
+            "besides 0, without saying which of them are deforested",
             value=path,
-            hint="name what nobody labelled with --ignore VALUE, or give a palette file of the classes",
+            hint="name unlabelled values with --ignore VALUE, or give a palette file of the classes",
         )
     return int(others[0]) if len(others) else None
 

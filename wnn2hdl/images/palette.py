@@ -28,7 +28,7 @@ CLASS_COLOURS = {
 
 
 IGNORED = "ignore"
-"""The entry of a palette file whose codes are of no class: nobody labelled these pixels."""
+"""The entry of a palette file whose codes are of no class: these pixels are unlabelled."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Palette:
         colours: red, green and blue of each class, 0 to 255, all different.
         codes: what stands for each class in masks, as `wnn2hdl.images.codes` makes them; the colours' own if
             left out.
-        ignored: codes of pixels that nobody labelled.
+        ignored: codes of unlabelled pixels.
     """
 
     names: tuple[str, ...]

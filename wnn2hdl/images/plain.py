@@ -59,8 +59,9 @@ class PlainHead:
     """What the head of a plain picture says.
 
     Attributes:
-        height: of the picture as viewers show it, in pixels; likewise `width`.
-        orientation: how the stored picture is to be turned, as EXIF numbers it from 1, upright.
+        height: of the picture as viewers show it, in pixels.
+        width: of the picture as viewers show it, in pixels.
+        orientation: how viewers turn the stored picture, as EXIF numbers it from 1, upright.
     """
 
     height: int
@@ -75,7 +76,7 @@ def plain_head(path: Path, kind: str) -> PlainHead | None:
 
     Args:
         path: a file.
-        kind: its format, as `wnn2hdl.raster.format_of` tells.
+        kind: its format, see `wnn2hdl.raster.format_of`.
 
     Raises:
         InputError: the file is damaged or too large.
@@ -107,7 +108,7 @@ def decode(path: Path, alpha: AlphaMeaning | None) -> tuple[NDArray[np.uint8], N
 
     Args:
         path: a file that `plain_head` takes for plain.
-        alpha: what its alpha holds; None for a mask, refused if it looks like data.
+        alpha: what its alpha holds; None excludes pixels by it, and refuses one that looks like data.
 
     Returns:
         uint8 ``[height, width, 3]``: red, green, blue; and which pixels are opaque, bool
@@ -146,7 +147,7 @@ def indices(path: Path) -> NDArray[np.uint8] | None:
 
 
 def turned(array: NDArray[Scalar], orientation: int) -> NDArray[Scalar]:
-    """An array ``[rows, columns, …]`` as EXIF's orientation says that it is to be shown; contiguous."""
+    """An array ``[rows, columns, …]`` turned as EXIF's orientation says; contiguous."""
     if orientation in (5, 6, 7, 8):
         array = array.swapaxes(0, 1)
     if orientation in (3, 4, 7, 8):
@@ -165,7 +166,7 @@ def _opened(path: Path) -> Iterator[ImageFile.ImageFile]:
             yield picture
     except Image.DecompressionBombError as error:
         raise InputError(
-            f"the picture is too large to be read at once, at most {MOST_PIXELS:,} pixels are",
+            f"the picture is too large to be read at once; the limit is {MOST_PIXELS:,} pixels",
             value=path,
             hint="cut it into tiles",
         ) from error

@@ -28,7 +28,7 @@ class Source(Protocol):
     height: int
     width: int
     block: tuple[int, int]
-    """Height and width of the blocks it is stored in; windows made of whole ones are read the quickest."""
+    """Height and width of the blocks it is stored in; windows made of whole blocks are read fastest."""
     note: str
     """What had to be assumed about it, for the summary."""
     files: tuple[Path, ...]
@@ -103,7 +103,7 @@ class PlainFile:
 
     @cached_property
     def georeference(self) -> Georeference:
-        """As a world file beside the picture tells; it locates the stored pixels, not turned ones."""
+        """As a world file beside the picture says; it locates the stored pixels, not turned ones."""
         if not self._world_files or self._head.orientation != 1:
             return Georeference()
         with Handles(self._path).borrowed() as source:
@@ -113,7 +113,7 @@ class PlainFile:
         """Raise InputError if the picture is turned, so that a mask for it has two readings."""
         if self._head.orientation != 1:
             raise InputError(
-                f"the picture says that it is to be turned (orientation {self._head.orientation})",
+                f"the picture is stored turned (orientation {self._head.orientation})",
                 value=self._path,
                 hint="save it upright",
             )
@@ -172,8 +172,8 @@ def open_picture(path: Path, reading: Reading = Reading()) -> Source:  # noqa: B
     Pillow and turned upright; everything else by GDAL, whose JPEGs have slightly other colours.
 
     Raises:
-        InputError: it cannot be read, or it is not said how, see `RasterReader`; or it is to be turned
-            upright, and is not plain or has a mask.
+        InputError: it cannot be read, or it is not said how, see `RasterReader`; or it is stored turned, and
+            is not plain or pixels are excluded.
         ExtraMissingError: GDAL is needed, and rasterio is not installed.
     """
     kind = format_of(path)
@@ -181,13 +181,13 @@ def open_picture(path: Path, reading: Reading = Reading()) -> Source:  # noqa: B
     head = None if chosen else plain_head(path, kind)
     if head is not None and not _in_windows(kind, head):
         plain = PlainFile(path, head, reading.alpha)
-        if reading.mask is None:
+        if reading.exclude is None:
             return plain
         plain.require_upright()
-        return Masked(plain, reading.mask)
+        return Masked(plain, reading.exclude)
     raster = RasterReader(path, reading)
     raster.require_upright()
-    return raster if reading.mask is None else Masked(raster, reading.mask)
+    return raster if reading.exclude is None else Masked(raster, reading.exclude)
 
 
 def _in_windows(kind: str, head: PlainHead) -> bool:

@@ -30,7 +30,7 @@ def read(source: Source, _: ImportOptions) -> LogicModel:
     with damage_reported(source, "an AIGER file"):
         header = HEADER.match(content)
         if header is None:
-            raise ValueError("the first line is no header")
+            raise ValueError("the first line is not a header")
         variables, inputs, latches, outputs, ands, *properties = map(int, header[2].split())
         if latches or any(properties):
             raise InputError(
@@ -61,7 +61,7 @@ Body = tuple[NDArray[np.uint32], NDArray[np.uint32], int]
 
 
 def _lines(content: bytes, at: int, count: int) -> tuple[list[bytes], int]:
-    """So many lines from a place, and where the next one starts."""
+    """``count`` lines from a place, and where the next one starts."""
     lines = []
     for _ in range(count):
         end = content.find(b"\n", at)
@@ -73,7 +73,7 @@ def _lines(content: bytes, at: int, count: int) -> tuple[list[bytes], int]:
 
 
 def _numbers(lines: list[bytes], columns: int) -> NDArray[np.int64]:
-    """Lines of so many numbers: int64 ``[lines, columns]``."""
+    """Lines of ``columns`` numbers each: int64 ``[lines, columns]``."""
     words = b" ".join(lines).split()
     if len(words) != columns * len(lines) or not all(word.isdigit() and len(word) < 10 for word in words):
         raise ValueError(f"there are lines that do not hold {columns} numbers")
@@ -96,7 +96,7 @@ def _binary(content: bytes, at: int, sizes: Sizes) -> Body:
 
 
 def _deltas(content: bytes, at: int, count: int) -> tuple[NDArray[np.int64], int]:
-    """So many numbers of seven bits a byte, the lowest first; the last byte of each has no high bit."""
+    """``count`` numbers of seven bits per byte, the lowest first; the last byte of each has no high bit."""
     raw = np.frombuffer(content, dtype=np.uint8, offset=at)[: 5 * count]
     ends = np.flatnonzero(raw < 0x80)[:count]
     if len(ends) < count:
@@ -121,7 +121,7 @@ def _ascii(content: bytes, at: int, sizes: Sizes) -> Body:
     gates = _numbers(lines, 3) if ands else np.empty((0, 3), dtype=np.int64)
     defined = np.concatenate([own_inputs, gates[:, 0]])
     if (defined & 1).any() or defined.min() < 2 or defined.max() >> 1 > variables:
-        raise ValueError("an input or a gate has a literal that is no variable")
+        raise ValueError("an input or a gate has a literal that is not a variable")
     if len(np.unique(defined)) != len(defined):
         raise ValueError("a variable is defined twice")
     _checked(gates[:, 1:].ravel(), variables)
@@ -155,7 +155,7 @@ def _renamed(literals: NDArray[np.int64], renamed: NDArray[np.int64]) -> NDArray
 
 def _checked(literals: NDArray[np.int64], variables: int) -> NDArray[np.uint32]:
     if literals.max(initial=0) > 2 * variables + 1:
-        raise ValueError(f"literal {literals.max()} is of a variable that there is not")
+        raise ValueError(f"literal {literals.max()} is of a variable that does not exist")
     return literals.astype(np.uint32)
 
 
@@ -167,7 +167,7 @@ def _symbols(text: str, counts: dict[str, int]) -> dict[str, tuple[str, ...]]:
             break
         symbol = SYMBOL.fullmatch(line)
         if symbol is None or int(symbol[2]) >= counts.get(symbol[1], 0):
-            raise ValueError(f"{line[:40]!r} names nothing that there is")
+            raise ValueError(f"{line[:40]!r} names nothing that exists")
         names[symbol[1]][int(symbol[2])] = symbol[3]
     return {kind: tuple(each) for kind, each in names.items()}
 

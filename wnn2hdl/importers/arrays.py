@@ -32,7 +32,7 @@ class PickledType(Saved):
             "f4",
             "f8",
         }:
-            raise UnreadablePickleError(f"a NumPy type {self.code[:20]!r} is no number")
+            raise UnreadablePickleError(f"a NumPy type {self.code[:20]!r} is not a number")
         return np.dtype(self.order + self.code)
 
 
@@ -82,8 +82,8 @@ NUMPY: dict[str, StandIn] = {
 
 
 def array_of(value: object, what: str) -> NDArray[Any]:
-    """The array that a pickled value is; raises UnreadablePickleError if it is none."""
+    """The array that a pickled value is; raises UnreadablePickleError if it is something else."""
     found = value.array if isinstance(value, PickledArray) else value
     if not isinstance(found, np.ndarray):
-        raise UnreadablePickleError(f"{what} is no array")
+        raise UnreadablePickleError(f"{what} is not an array")
     return found

@@ -27,12 +27,12 @@ class ImportOptions:
     """What a file may leave open. Each importer names those that it takes.
 
     Attributes:
-        bleaching: a fixed threshold in place of a dynamic one: another classifier.
+        bleach: a fixed threshold in place of a dynamic one, which makes another classifier.
         config: a second file that belongs to the first.
         classes: how many classes the outputs are grouped into.
     """
 
-    bleaching: int | None = None
+    bleach: int | None = None
     config: Path | None = None
     classes: int | None = None
 
@@ -65,7 +65,7 @@ class Source:
 
     @cached_property
     def object(self) -> dict[str, Any] | None:
-        """The JSON object that the file holds; None if it holds none."""
+        """The JSON object that the file holds; None if it does not hold one."""
         if self.content[:4096].lstrip()[:1] != b"{":
             return None
         try:
@@ -75,11 +75,11 @@ class Source:
         return data if isinstance(data, dict) else None
 
     def json(self) -> dict[str, Any]:
-        """The JSON object that the file holds, of finite numbers; raises ModelFileError if it is none."""
+        """The JSON object that the file holds, of finite numbers; raises ModelFileError if there is none."""
         return read_json(self.path, "a model")
 
     def origin(self, tool: str, **notes: Any) -> dict[str, Any]:
-        """What a model notes of where it comes from."""
+        """What a model records about where it comes from."""
         digest = hashlib.sha256(self.content).hexdigest()
         return {"tool": tool, "file": self.path.name, "sha256": digest, **notes}
 
@@ -122,5 +122,5 @@ def damage_reported(source: Source, what: str) -> Iterator[None]:
 def whole_numbers(values: object, what: str) -> NDArray[np.int64]:
     """A list of whole numbers, not empty, as int64 ``[numbers]``; raises ValueError for anything else."""
     if not isinstance(values, list) or not values or not all(type(value) is int for value in values):
-        raise ValueError(f"{what} is no list of whole numbers")
+        raise ValueError(f"{what} is not a list of whole numbers")
     return np.array(values, dtype=np.int64)

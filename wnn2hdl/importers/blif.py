@@ -32,7 +32,7 @@ REFUSED = {
     ".search": "it uses other files; flatten it first",
     ".gate": "it uses cells of a library; write it with .names only",
     ".mlatch": "it has latches; only combinational networks can be imported",
-    ".exdc": "it states don't-cares, which a model has none of",
+    ".exdc": "it states don't-cares, which a model does not have",
 }
 
 
@@ -102,7 +102,7 @@ def _lines(text: str) -> Iterator[list[str]]:
         if words:
             yield words
     if held:
-        raise ValueError("the last line is continued by none")
+        raise ValueError("the last line is continued by nothing")
 
 
 def _parse(source: Source, text: str) -> _Network:
@@ -144,7 +144,7 @@ def _row(words: tuple[str, ...], inputs: int) -> tuple[str, str]:
     """A line of a cover: what each input must be, and the answer."""
     cube, answer = (words[0], words[1]) if len(words) == 2 else ("", words[0])
     if len(words) > 2 or len(cube) != inputs or cube.strip("01-") or answer not in ("0", "1"):
-        raise ValueError(f"{' '.join(words)[:40]!r} is no line of a cover of {inputs} inputs")
+        raise ValueError(f"{' '.join(words)[:40]!r} is not a line of a cover of {inputs} inputs")
     return cube, answer
 
 

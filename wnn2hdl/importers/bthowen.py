@@ -43,10 +43,10 @@ def read(source: Source, _: ImportOptions) -> BloomWisardModel:
                 f"there are {len(discriminators)} discriminators for {info['num_classes']} classes"
             )
         if width < 1 or inputs < 1 or entries < 2:
-            raise ValueError("its sizes are those of no model")
+            raise ValueError("no model has its sizes")
         mapping = _mapping(model, width, inputs)
         if len(discriminators) * len(mapping) * entries > MAX_PICKLE_BYTES:
-            raise ValueError("it says it has more entries than there can be in the file")
+            raise ValueError("it claims more entries than the file can hold")
         hashes = _hashes(array_of(info["hash_values"], "hash_values"), entries)
         contents = np.stack([_contents(each, len(mapping), entries, hashes) for each in discriminators])
         return BloomWisardModel(
@@ -85,7 +85,7 @@ def _mapping(model: Record, width: int, inputs: int) -> NDArray[np.int32]:
     order = array_of(model.state["input_order"], "input_order")
     padded = -(-width // inputs) * inputs
     if order.shape != (padded,) or not np.array_equal(np.sort(order), np.arange(padded)):
-        raise ValueError(f"input_order is no order of {padded} inputs")
+        raise ValueError(f"input_order is not an order of {padded} inputs")
     return np.where(order < width, order, ZERO).astype(np.int32).reshape(-1, inputs)
 
 
@@ -93,7 +93,7 @@ def _hashes(values: NDArray[Any], entries: int) -> NDArray[np.uint32]:
     if values.dtype.kind not in "iu" or values.ndim != 2 or values.size == 0:
         raise ValueError(f"hash_values has shape {values.shape}")
     if values.min() < 0 or values.max() >= entries:
-        raise ValueError(f"a hash constant is no index of {entries} entries")
+        raise ValueError(f"a hash constant is not an index of {entries} entries")
     return values.astype(np.uint32)
 
 
@@ -110,7 +110,7 @@ def _contents(
 def _filter(state: dict[str, Any], entries: int, hashes: NDArray[np.uint32]) -> NDArray[np.bool_]:
     data = array_of(state["data"], "a filter's data")
     if data.shape != (entries,) or not np.array_equal(array_of(state["hash_values"], "hash_values"), hashes):
-        raise ValueError(f"a filter holds {data.shape} entries, not {entries}, or has hashes of its own")
+        raise ValueError(f"a filter holds {data.shape} entries, not {entries}, or has its own hashes")
     bleach = state["bleach"]
     return np.asarray(data >= (bleach if type(bleach) is int else array_of(bleach, "bleach").reshape(())))
 

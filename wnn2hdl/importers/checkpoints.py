@@ -106,7 +106,7 @@ class _Archive:
     def storage(self, identifier: Any) -> _Storage:
         """The storage that a pickle refers to by ``("storage", kind, key, device, numbers)``."""
         if not isinstance(identifier, tuple) or len(identifier) != 5 or identifier[0] != "storage":
-            raise UnreadablePickleError("it refers to something that is no storage")
+            raise UnreadablePickleError("it refers to something that is not a storage")
         _, kind, key, _, numbers = identifier
         if not isinstance(kind, StandIn) or not isinstance(key, str) or not isinstance(numbers, int):
             raise UnreadablePickleError("it refers to a damaged storage")
@@ -144,7 +144,7 @@ def _tensor(storage: Any, offset: Any, shape: Any, strides: Any, *_: Any) -> NDA
     if not whole or not all(type(n) is int and n >= 0 for n in (offset, *shape, *strides)):
         raise UnreadablePickleError("a tensor is damaged")
     if not isinstance(storage, _Storage) or len(shape) != len(strides):
-        raise UnreadablePickleError("a tensor is no view of a storage")
+        raise UnreadablePickleError("a tensor is not a view of a storage")
     content = storage.content
     size = int(np.prod(shape, dtype=object))
     last = offset + sum((n - 1) * stride for n, stride in zip(shape, strides, strict=True))

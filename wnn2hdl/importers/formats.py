@@ -26,7 +26,8 @@ def known_formats() -> dict[str, Importer]:
     """Importers by name: our own, then those of other packages.
 
     Raises:
-        InputError: another package's importer cannot be loaded, is none, or takes a name that is in use.
+        InputError: another package's importer cannot be loaded, is not an importer, or uses a name that is
+            taken.
     """
     found = {importer.name: importer for importer in BUILT_IN}
     for point in entry_points(group=GROUP):
@@ -36,7 +37,7 @@ def known_formats() -> dict[str, Importer]:
             raise InputError("cannot load an importer", value=f"{point.value} ({error})") from error
         if not isinstance(importer, Importer) or importer.name in found:
             raise InputError(
-                "not an importer with a name of its own",
+                "not an importer with its own name",
                 value=point.value,
                 hint="uninstall or repair its package",
             )
@@ -59,14 +60,14 @@ def import_model(
 
     Raises:
         InputError: the file cannot be read, is of no known format or of several, is damaged, leaves open
-            what no option says, or an option was given that says nothing about it.
+            what no option says, or an option was given that does not apply to it.
     """
     source = Source(path)
     importer = _recognised(source) if format_name is None else known_formats()[format_name]
     needless = sorted(options.given - importer.options)
     if needless:
         raise InputError(
-            f"an option says nothing about {importer.description}",
+            f"an option does not apply to {importer.description}",
             value=f"--{needless[0]}",
             hint="leave it out",
         )

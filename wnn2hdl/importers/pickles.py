@@ -190,7 +190,7 @@ class _Machine:
     def _extend(self, values: list[Any]) -> None:
         target = self.stack[-1]
         if type(target) is not list:
-            raise UnreadablePickleError("something is appended to what is no list")
+            raise UnreadablePickleError("something is appended to what is not a list")
         target.extend(values)
 
     def _empty_set(self, _: Any) -> None:
@@ -199,7 +199,7 @@ class _Machine:
     def _additems(self, _: Any) -> None:
         values, target = self._marked(), self.stack[-1]
         if type(target) is not set:
-            raise UnreadablePickleError("something is added to what is no set")
+            raise UnreadablePickleError("something is added to what is not a set")
         target.update(_keys(values))
 
     def _empty_dict(self, _: Any) -> None:
@@ -215,7 +215,7 @@ class _Machine:
     def _update(self, pairs: list[Any]) -> None:
         target = self.stack[-1]
         if type(target) is not dict:
-            raise UnreadablePickleError("an item is set in what is no dictionary")
+            raise UnreadablePickleError("an item is set in what is not a dictionary")
         target.update(zip(_keys(pairs[::2]), pairs[1::2], strict=True))
 
     def _global(self, argument: str) -> None:
@@ -236,7 +236,7 @@ class _Machine:
     def _reduce(self, _: Any) -> None:
         arguments, function = self.stack.pop(), self.stack.pop()
         if not isinstance(function, StandIn) or not isinstance(arguments, tuple):
-            raise UnreadablePickleError("it calls what is no function")
+            raise UnreadablePickleError("it calls what is not a function")
         self.stack.append(function.make(*arguments))
 
     _newobj = _reduce
@@ -255,7 +255,7 @@ class _Machine:
 
 
 def _keys(values: list[Any]) -> list[Any]:
-    # The hash of a tuple of tuples of … can take for ever.
+    # The hash of a tuple of tuples of … can take forever.
     if not all(isinstance(value, str | int | float | bool) for value in values):
         raise UnreadablePickleError("a key is neither a text nor a number")
     return values

@@ -53,8 +53,8 @@ def read(source: Source, options: ImportOptions) -> SparseWisardModel:
         origin = source.origin(
             "wisardpkg",
             version=str(data.get("version", "")),
-            bleaching=f"fixed at {bleaching} by request: another classifier than the file's"
-            if options.bleaching is not None
+            bleaching=f"fixed at {bleaching} by request: not the classifier of the file"
+            if options.bleach is not None
             else "as in the file",
             encoder="the file holds none: the model reads bits",
         )
@@ -72,8 +72,8 @@ def read(source: Source, options: ImportOptions) -> SparseWisardModel:
 
 
 def _bleaching(data: dict[str, Any], options: ImportOptions) -> int | Dynamic:
-    if options.bleaching is not None:
-        return options.bleaching
+    if options.bleach is not None:
+        return options.bleach
     return Dynamic(int(data.get("confidence", 1))) if data["bleachingActivated"] else 1
 
 
@@ -130,6 +130,4 @@ def _ram(text: str, ignore_zero: bool) -> NDArray[Any]:
     return kept
 
 
-IMPORTER = Importer(
-    "wisardpkg", "a wisardpkg model (JSON)", recognises, read, options=frozenset({"bleaching"})
-)
+IMPORTER = Importer("wisardpkg", "a wisardpkg model (JSON)", recognises, read, options=frozenset({"bleach"}))

@@ -191,7 +191,7 @@ def care_from_json(data: dict[str, Any]) -> CareSet:
             return Patterns(rows[:, :width].astype(np.bool_))
         case Implied.kind:
             return Implied(width, tuple(tuple(map(int, group)) for group in data["falling"]))
-    raise ValueError(f"{data['kind']!r} is no kind of care set")
+    raise ValueError(f"{data['kind']!r} is not a kind of care set")
 
 
 def _occurring(rows: Bits, positions: tuple[int, ...]) -> NDArray[np.bool_]:

@@ -47,7 +47,7 @@ class Circuit:
     care: tuple[Care, ...] = ()
 
     def __post_init__(self) -> None:
-        # Behind a prefix a reserved word is none.
+        # Behind a prefix, a reserved word is an ordinary name.
         check_identifier(f"x_{self.name}")
         check_comment(self.summary)
         widths = {port.name: port.width for port in self.inputs}

@@ -90,7 +90,7 @@ _READERS: Mapping[str, Callable[[Mapping[str, Any]], Node]] = {
 
 def _node_from_json(data: Mapping[str, Any], known: Mapping[str, Circuit]) -> Node:
     if not isinstance(data["name"], str):
-        raise ValueError(f"{data['name']!r} is no name of a node")
+        raise ValueError(f"{data['name']!r} is not a name of a node")
     if data["kind"] == Instance.kind:
         inputs = {port: word_from_json(word) for port, word in data["inputs"].items()}
         return Instance(data["name"], known[data["circuit"]], inputs)

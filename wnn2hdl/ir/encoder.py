@@ -37,7 +37,7 @@ class BitSelect:
         for name in self.bits:
             if name not in PIXEL_BIT_NAMES:
                 raise ValueError(
-                    f"{name!r} is no pixel bit; use R, G or B and a number from 0 to 7, as in R7"
+                    f"{name!r} is not a pixel bit; use R, G or B and a number from 0 to 7, as in R7"
                 )
         if not self.bits:
             raise ValueError("no bits were chosen; name at least one, as in R7")
@@ -101,7 +101,7 @@ class Tap:
 
     Attributes:
         row: of the pixel in the window, 0 at the top.
-        column: likewise, 0 at the left.
+        column: of the pixel in the window, 0 at the left.
         pixel: the bits of the pixel that are read.
         contents: bit ``c`` is the answer for code ``c`` of ``pixel``.
     """
@@ -132,8 +132,8 @@ class Tap:
 class Neighbourhood:
     """Bits of a pixel and its neighbours: each is a small table's answer for one pixel of a square window.
 
-    In hardware a tap is a pixel circuit of its own. Where pixels come as a stream, each table answers once a
-    pixel and its answers are delayed to their place in the window, one bit wide.
+    In hardware each tap is a pixel circuit. Where pixels come as a stream, each table answers once
+    per pixel, and its answers are delayed to their place in the window, one bit wide.
 
     Attributes:
         size: rows and columns of the window, odd; the classified pixel is in its middle.
@@ -200,7 +200,7 @@ class Neighbourhood:
 
 
 PictureEncoder = BitSelect | Neighbourhood
-"""What makes codes of pictures; its ``halo`` tells how many pixels at a picture's rim have none."""
+"""What makes codes of pictures; its ``halo`` is how many pixels at a picture's rim have none."""
 
 Encoder = PictureEncoder | FeatureEncoder
 

@@ -16,7 +16,7 @@ class Equation:
     Attributes:
         kind: ``sum`` is the OR of ANDs; ``product`` is the complement of such a sum, an AND of ORs;
             ``parity`` is the XOR of the inputs in ``terms[0]``'s mask, complemented if its value is not 0.
-        terms: product terms of the sum; the constant 0 is a sum of none, 1 a sum of one without literals.
+        terms: product terms of the sum; the constant 0 is a sum of no terms, 1 of one term without literals.
     """
 
     kind: Kind
@@ -76,7 +76,7 @@ def _sorted_cover(contents: int, width: int) -> tuple[Term, ...]:
 
 
 def _parity(contents: int, width: int) -> Equation | None:
-    """The table as an XOR of two inputs or more; None if it is none."""
+    """The table as an XOR of two inputs or more; None if it is something else."""
     first = contents & 1
     mask = sum(1 << i for i in range(width) if (contents >> (1 << i) & 1) != first)
     table = first

@@ -88,7 +88,7 @@ class FixedPoint:
         """The inverse of ``str``; raises ValueError on anything else."""
         match = _NOTATION.fullmatch(text)
         if match is None:
-            raise ValueError(f"{text!r} is no format of words, as Q3.12 or UQ8.0")
+            raise ValueError(f"{text!r} is not a format of words, as Q3.12 or UQ8.0")
         signed, whole, fraction = not match[1], int(match[2]), int(match[3])
         return cls(whole + fraction + signed, fraction, signed)
 
@@ -240,7 +240,7 @@ class Words:
             ValueError: other numbers.
         """
         array = _matrix(features, self.features, None)
-        with np.errstate(invalid="ignore"):  # NaN becomes some number, which is then no equal
+        with np.errstate(invalid="ignore"):  # NaN becomes some number, which is then not equal to it
             words = array.astype(np.int64)
         whole = np.array_equal(words, array)
         if not whole or words.min(initial=0) < 0 or words.max(initial=0) >> self.word_bits:

@@ -1,4 +1,4 @@
-"""Names of Verilog modules: what is one, and what no HDL or C++ compiler takes for a word of its own."""
+"""Names of Verilog modules: what is one, and which words HDLs and C++ reserve."""
 
 import re
 from importlib.resources import files
@@ -21,7 +21,7 @@ def require_name(name: str) -> str:
     """A name that modules can begin with, as it was given.
 
     Raises:
-        InputError: it is no identifier of Verilog and VHDL alike, or too long.
+        InputError: it is not an identifier of Verilog and VHDL alike, or too long.
     """
     plain = _NAME.fullmatch(name) and "__" not in name and not name.endswith("_")
     if not plain or len(name) > _LONGEST:

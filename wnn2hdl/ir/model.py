@@ -26,11 +26,11 @@ COMMAND = "command"
 
 @dataclass(frozen=True, eq=False)
 class WisardModel:
-    """A WiSARD: one discriminator a class, each of ``k`` RAMs with ``n`` address bits.
+    """A WiSARD: one discriminator per class, each of ``k`` RAMs with ``n`` address bits.
 
     A RAM fires if the count at its address reaches the bleaching threshold; a discriminator's response is how
     many of its RAMs fire (the reference design's r_i(x)); the highest response wins, and among equal ones the
-    class named first. A network of one RAM a class that reads every bit is a plain look-up table.
+    class named first. A network of one RAM per class that reads every bit is a plain look-up table.
 
     Attributes:
         encoder: what turns a pixel or features into the ``encoder.width`` input bits.
@@ -42,7 +42,8 @@ class WisardModel:
         bleaching: the threshold, at least 1.
         training: where the model comes from (seed, data, chosen threshold …), any JSON object.
         colours: int64, codes of `COLOURS` that occur in the training images, ascending; None if they are not
-            known. They decide no answer, but tell imagery of the kind that was trained on from foreign one.
+            known. They decide no answer, but distinguish imagery of the kind that was trained on from foreign
+            imagery.
     """
 
     kind: ClassVar[str] = "wisard"
@@ -168,7 +169,7 @@ class WisardModel:
         if mapping.shape[1:] != shape:
             raise ValueError(f"the mapping has shape {mapping.shape}; rams and address_bits say {shape}")
         if len(data["counts"]) != len(data["classes"]) or any(len(d) != shape[0] for d in data["counts"]):
-            raise ValueError("counts must hold a list a class with an entry a RAM")
+            raise ValueError("counts must hold one list per class with one entry per RAM")
         # A RAM takes a few bytes in the file, however many addresses it has.
         check_size(len(data["classes"]), *shape)
         counts = np.stack([[_dense(ram, shape[1]) for ram in rams] for rams in data["counts"]])

@@ -73,7 +73,7 @@ def answers_digest(data: dict[str, Any]) -> str:
 def pack(array: NDArray[Any]) -> dict[str, Any]:
     """An array as a JSON object: its shape, and its little-endian bytes in base64; bool as bits.
 
-    Bits are packed eight a byte, the first in the byte's least significant bit.
+    Bits are packed eight per byte, the first in the byte's least significant bit.
     """
     if array.dtype == np.bool_:
         name, content = "bits", np.packbits(array, bitorder="little").tobytes()
@@ -95,7 +95,7 @@ def unpack(data: dict[str, Any], dtype: type[np.generic], dimensions: int) -> ND
     try:
         content = base64.b64decode(data["base64"], validate=True)
     except binascii.Error as error:
-        raise ValueError(f"an array is no base64: {error}") from error
+        raise ValueError(f"an array is not base64: {error}") from error
     size = math.prod(shape)
     expected = -(-size // 8) if dtype == np.bool_ else size * np.dtype(dtype).itemsize
     if len(content) != expected:

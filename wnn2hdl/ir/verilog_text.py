@@ -1,4 +1,4 @@
-"""What may stand in Verilog as it is: names of nets, and lines of comments that are no command to a tool."""
+"""What may stand in Verilog as it is: names of nets, and comments that are not commands to a tool."""
 
 import re
 
@@ -19,7 +19,7 @@ def check_identifier(name: object) -> None:
     plain = isinstance(name, str) and _NAME.fullmatch(name) and "__" not in name and name[-1] != "_"
     if not isinstance(name, str) or not plain or len(name) > _LONGEST:
         raise ValueError(
-            f"{name!r:.80} is no name: use letters, digits and single underscores, a letter first"
+            f"{name!r:.80} is not a name: use letters, digits and single underscores, a letter first"
         )
     if name.lower() in RESERVED:
         raise ValueError(f"the name {name} is a reserved word of an HDL or of C++")
@@ -32,6 +32,6 @@ def check_comment(line: object) -> None:
     words that they obey inside a comment.
     """
     if not isinstance(line, str) or not (line.isascii() and line.isprintable()) or line.endswith("\\"):
-        raise ValueError(f"{line!r:.80} is no line of a comment")
+        raise ValueError(f"{line!r:.80} is not a line of a comment")
     if not _COMMANDS.isdisjoint(re.findall(r"\w+", line.lower())[:1]):
         raise ValueError(f"the comment {line!r:.80} is a command to a tool")

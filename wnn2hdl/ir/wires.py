@@ -23,7 +23,7 @@ _SLICE = re.compile(r"([A-Za-z]\w*(?:\.\w+)?)\[(\d+):(\d+)\]", re.ASCII)
 class Port:
     """A port of a circuit: its name, an identifier of every HDL, and its width in bits.
 
-    The name of the clock, which no circuit has as a port of its own, is ``clk``.
+    The name of the clock, which no circuit has as its own port, is ``clk``.
     """
 
     name: str

@@ -151,6 +151,6 @@ def _all(node: Table | Match | Instance) -> Word:
 
 
 def _any(width: int) -> TruthTable:
-    """The OR of so many bits."""
+    """The OR of all bits."""
     names = tuple(f"class_bit{i}" for i in range(width))
     return TruthTable.exact(names, ("foreground",), np.arange(1 << width)[:, np.newaxis] > 0)

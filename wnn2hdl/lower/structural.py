@@ -65,7 +65,7 @@ def core(model: VotingModel) -> Circuit:
     """The network behind the encoder: ``bits``, all of the encoder's, to ``class_bits``.
 
     Raises:
-        InputError: a table has more inputs than can be enumerated, or the bleaching is found anew for each
+        InputError: a table has more inputs than can be enumerated, or the bleaching is found again for each
             sample.
     """
     layers, owners = _layers(model)
@@ -88,7 +88,7 @@ def core(model: VotingModel) -> Circuit:
         word = tuple(net for net, voted in zip(nets, owners, strict=True) if voted == owner)
         if not word:
             raise InputError(
-                "a class has no table that votes for it", value=model.classes[owner], hint="train it anew"
+                "a class has no table that votes for it", value=model.classes[owner], hint="train it again"
             )
         votes.append(Sum(f"votes_{owner}", word))
     winner = ArgMax(
@@ -147,9 +147,9 @@ def _layers(model: VotingModel) -> tuple[list[Layer], NDArray[np.integer]]:
         owners = np.repeat(np.arange(len(model.classes)), model.rams)
         return [Layer(mapping, _fires(model, model.bleaching))], owners
     raise InputError(
-        "the bleaching threshold is found anew for each sample, which is no circuit of tables",
+        "the bleaching threshold is found again for each sample, which is not a circuit of tables",
         value=f"confidence {model.bleaching.confidence}",
-        hint="import the model with a fixed threshold: --bleaching",
+        hint="import the model with a fixed threshold: --bleach",
     )
 
 

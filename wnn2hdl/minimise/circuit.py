@@ -17,7 +17,7 @@ class MinimisedCircuit:
     Attributes:
         circuit: the circuit.
         covers: the two-level cover of each table, by the names of `Circuit.tables`.
-        methods: how each network was found, likewise.
+        methods: how each network was found, by the same names.
     """
 
     circuit: Circuit

@@ -3,7 +3,7 @@
 A *bound set* B of at most six signals is replaced by ``t`` wires, each one LUT over B. Two assignments of B
 (columns of the decomposition chart) may share the wires' value if no assignment of the other signals makes
 one ON and the other OFF: the fewest values are a colouring of the incompatible columns (Roth and Karp 1962).
-A signal of B may be read by the rest as well (non-disjoint decomposition): columns that it tells apart need
+A signal of B may be read by the rest as well (non-disjoint decomposition): columns that it distinguishes need
 no other colour.
 """
 
@@ -208,7 +208,7 @@ def _coloured(
 
 
 def _expected(colours: int, removed: int, width: int) -> float:
-    """LUTs a bound set of so many colours is expected to cost; infinite if it gains nothing."""
+    """LUTs that a bound set of this many colours is expected to cost; infinite if it gains nothing."""
     wires = max(colours - 1, 1).bit_length()
     return wires + expected_luts(width - removed + wires) if wires < removed else np.inf
 

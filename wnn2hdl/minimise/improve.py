@@ -1,7 +1,7 @@
 """Boolean resubstitution with complete don't-cares on a mapped network.
 
 The inputs are few, so every signal is a column of its values on all cared-for codes, and the freedom of a
-cell is exact: the codes on which flipping it changes no output. A cell is expressed anew by other signals of
+cell is exact: the codes on which flipping it changes no output. A cell is expressed by other signals of
 the network within that freedom, so that some cell loses its last reader (Mishchenko et al., "Scalable
 don't-care-based logic optimization and resynthesis", 2011, here with don't-cares of the environment).
 """

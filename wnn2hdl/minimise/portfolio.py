@@ -73,9 +73,9 @@ class Mapping:
 
 
 def generators() -> dict[str, str]:
-    """All outside of this package that decides what a table is minimised or mapped to, each with its version.
+    """Everything outside of this package that decides what a table is mapped to, each with its version.
 
-    NumPy draws the random numbers and PyEDA's espresso makes the covers. Besides, ABC and espresso sort with
+    NumPy draws the random numbers and PyEDA's espresso makes the covers. ABC and espresso also sort with
     the C library's ``qsort``, and one of ABC's commands draws from its ``rand``: another C library may settle
     ties another way.
 

@@ -5,11 +5,11 @@ What comes out depends on what goes in alone, not on how fast or busy the machin
 - No command has a time limit. `&deepsyn` and `lutexact` could have one (``-T``), which is off unless asked
   for; what bounds the work are counts of conflicts, nodes, cuts, divisors and rounds, at their defaults.
 - Commands that draw random numbers (`dch`, `scorr`, `ifraig`, `&fraig`, `&dch`, `&ttopt`, `&deepsyn`,
-  `&decpla`) seed them anew with a constant each time. Even so each recipe gets a process of its own: no
+  `&decpla`) seed them with a constant each time. Even so each recipe gets its own process: no
   state that another left, and no crash of another, can reach it.
 - A recipe is asked only for functions small enough for it, counted in nodes of ABC's own network. The limit
-  on seconds is a net for the unforeseen, far beyond what was measured: whoever falls into it gets an error,
-  not another circuit.
+  in seconds is for the unforeseen, far beyond what was measured: exceeding it gives an error, not another
+  circuit.
 
 This was read in ABC's sources of August 2026 (berkeley-abc/abc 5ea3464) and measured with the yosys-abc of
 pyosys 0.70, which is a little younger and has `&decpla`.
@@ -184,7 +184,7 @@ def _run(
     scripts: Sequence[tuple[str, str]], files: dict[str, str], width: int
 ) -> Iterator[tuple[str, Draft]]:
     """What each script makes of the files, one process each, started when it is asked for."""
-    find_abc()  # a missing ABC is the user's to know; a recipe that fails is not
+    find_abc()  # a missing ABC is reported to the user; a recipe that fails is not
     with _folder(files) as folder:
         for number, (method, script) in enumerate(scripts):
             result = folder / f"{number}.blif"
@@ -203,7 +203,7 @@ def _nodes(script: str, files: dict[str, str]) -> int:
         output = run_abc(f"{script}; strash; print_stats", cwd=folder, timeout=_SAFETY_NET)
     found = _NODES.search(output)
     if found is None:
-        raise ToolError("yosys-abc tells no number of nodes", output=output)
+        raise ToolError("yosys-abc did not print the number of nodes", output=output)
     return int(found[1])
 
 

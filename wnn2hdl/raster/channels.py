@@ -51,7 +51,7 @@ def choose_channels(
         raise InputError(
             "the colours and the names of the file's bands differ",
             value=f"{path} ({', '.join(interpretations)} / {', '.join(str(x) for x in descriptions)})",
-            hint="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
+            hint="give --bands RED,GREEN,BLUE, as in --bands 3,2,1",
         )
     if found:
         return Channels(found.pop())
@@ -63,7 +63,7 @@ def choose_channels(
     raise InputError(
         f"the file does not say which of its {count} bands are red, green and blue",
         value=f"{path} ({', '.join(interpretations)})",
-        hint="say --bands RED,GREEN,BLUE, as in --bands 3,2,1",
+        hint="give --bands RED,GREEN,BLUE, as in --bands 3,2,1",
     )
 
 

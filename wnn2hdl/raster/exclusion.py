@@ -16,7 +16,8 @@ class Exclusion:
 
     Args:
         path: a raster.
-        height: of the picture, in pixels; likewise ``width``.
+        height: of the picture, in pixels.
+        width: of the picture, in pixels.
         georeference: where the picture lies.
 
     Attributes:
@@ -30,7 +31,9 @@ class Exclusion:
     def __init__(self, path: Path, height: int, width: int, georeference: Georeference) -> None:
         if format_of(path) == JPEG:
             raise InputError(
-                "a JPEG cannot be a mask, its compression smears it", value=path, hint="save it as PNG"
+                "a JPEG cannot be a mask, because its compression smears it",
+                value=path,
+                hint="save it as PNG",
             )
         self._handles = Handles(path)
         with self._handles.borrowed() as source:

@@ -1,4 +1,4 @@
-"""Which formats are read, told by a file's first bytes: its name says nothing, and nothing else is opened."""
+"""Which formats are read, recognised by a file's first bytes, not by its name; nothing else is opened."""
 
 from pathlib import Path
 
@@ -32,8 +32,8 @@ def format_of(path: Path) -> str:
     """The format of a file by its first bytes: `PNG`, `JPEG`, `BMP`, `TIFF` or `JP2`.
 
     Raises:
-        InputError: there is no such file, it is no regular one, it cannot be read, it is empty, or of another
-            format.
+        InputError: there is no such file, it is not a regular one, it cannot be read, it is empty, or of
+            another format.
     """
     require_file(path, "the picture")
     try:

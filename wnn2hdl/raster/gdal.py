@@ -1,4 +1,4 @@
-"""The door to GDAL: which files it may open, what is wrong in one line, where a raster lies on the Earth."""
+"""Access to GDAL: which files it may open, one line for what is wrong, where a raster lies on the Earth."""
 
 import math
 import warnings
@@ -15,7 +15,7 @@ from wnn2hdl.raster.formats import TIFF, format_of
 CACHE_BYTES = 64 << 20
 """GDAL's cache of decoded blocks; by default it takes a twentieth of the machine's memory.
 
-Here it is a number of bytes, unlike the environment's variable of that name.
+Here it is a number of bytes, unlike the environment variable of that name.
 """
 
 _SETTINGS = {
@@ -119,7 +119,7 @@ def gdal(path: Path) -> Iterator[Any]:
         ExtraMissingError: rasterio is not installed.
         InputError: the file is damaged, or cannot be written.
     """
-    with _told(path, "cannot read or write the raster", "it may be damaged, or the disk full") as rasterio:
+    with _refused(path, "cannot read or write the raster", "it may be damaged, or the disk full") as rasterio:
         yield rasterio
 
 
@@ -131,12 +131,12 @@ def decoding(path: Path) -> Iterator[Any]:
         ExtraMissingError: rasterio is not installed.
         InputError: the file is damaged.
     """
-    with _told(path, "the picture is damaged or truncated", "copy or save it again") as rasterio:
+    with _refused(path, "the picture is damaged or truncated", "copy or save it again") as rasterio:
         yield rasterio
 
 
 @contextmanager
-def _told(path: Path, fault: str, hint: str) -> Iterator[Any]:
+def _refused(path: Path, fault: str, hint: str) -> Iterator[Any]:
     rasterio = _rasterio()
     # Some calls let GDAL's own errors through, which rasterio does not publish.
     from rasterio._err import CPLE_BaseError
@@ -150,7 +150,7 @@ def _told(path: Path, fault: str, hint: str) -> Iterator[Any]:
 
 
 def open_raster(rasterio: Any, path: Path, mode: str = "r", **profile: Any) -> Any:
-    """An open dataset; that it is not georeferenced is no reason for a warning.
+    """An open dataset; no warning is given if it is not georeferenced.
 
     What is to be read must be of one of the formats of `wnn2hdl.raster.formats`, and neither it nor the files
     beside it that GDAL would open may point at others.
@@ -160,7 +160,7 @@ def open_raster(rasterio: Any, path: Path, mode: str = "r", **profile: Any) -> A
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-        # Whole paths only: GDAL takes a name that begins with a driver's for a call of that driver.
+        # Absolute paths only: GDAL takes a name that begins with a driver's for a call of that driver.
         if mode != "r":
             return rasterio.open(path.absolute(), mode, **profile)
         return _open_harmless(rasterio, path, format_of(path))
@@ -199,7 +199,7 @@ def _pointing(path: Path) -> InputError:
     return InputError(
         "the file may point at other files, which are not opened for it",
         value=path,
-        hint="remove it, or save the picture as a TIFF of its own",
+        hint="remove it, or save the picture as a TIFF in another folder",
     )
 
 

@@ -57,7 +57,7 @@ class Levels:
         return cls(tuple(_samples(scale, *unit) for unit in units), inverted)
 
     def apply(self, samples: NDArray[Any]) -> NDArray[np.uint8]:
-        """Samples ``[bands, …]`` as uint8 of the same shape; what is no number becomes 0 (or white's 255)."""
+        """Samples ``[bands, …]`` as uint8 of the same shape; NaN becomes 0 (or white's 255)."""
         if self.limits is not None:
             if len(set(self.limits)) == 1:
                 samples = scaled(samples, *self.limits[0])
@@ -79,7 +79,7 @@ def scaled(samples: NDArray[Any], low: float, high: float) -> NDArray[np.uint8]:
     ``low``.
     """
     if samples.dtype.itemsize <= 2 and samples.dtype.kind in "iu":
-        # One look-up a sample instead of arithmetic in float64.
+        # One look-up per sample instead of arithmetic in float64.
         limits = np.iinfo(samples.dtype)
         levels = np.arange(limits.min, limits.max + 1, dtype=np.float64)
         return np.take(_scaled(levels, low, high), samples.astype(np.int64) - limits.min)
@@ -110,7 +110,7 @@ def _require_reach(
         raise InputError(
             f"the file's values reach from {min(reached):g} to {max(reached):g}, so none becomes white",
             value=f"--scale {scale[0]:g}:{scale[1]:g} for {path} ({_spoken(units)})",
-            hint="say --scale in the file's units",
+            hint="give --scale in the file's units",
         )
 
 
@@ -127,9 +127,9 @@ def _unscaled(
     span = f"{found.min():g} to {found.max():g} in a sample" if found.size else "no valid value in a sample"
     unit = f"; {_spoken(units)}" if any(unit != (1, 0) for unit in units) else ""
     return InputError(
-        f"the samples are {'/'.join(sorted(kinds))}, and how they become 0 to 255 is not said",
+        f"the samples are {'/'.join(sorted(kinds))}, and it is not said how they become 0 to 255",
         value=f"{path} ({span}{unit})",
-        hint="say --scale LOW:HIGH, as in --scale 0:3000",
+        hint="give --scale LOW:HIGH, as in --scale 0:3000",
     )
 
 

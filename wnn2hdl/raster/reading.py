@@ -33,27 +33,29 @@ class Reading:
         bands: band numbers from 1 of red, green and blue, or of one band; None for what the file states.
         scale: values ``(low, high)`` that become 0 and 255; what lies beyond is cut off. None for 8-bit
             samples as they are. Where the file states a scale and an offset, the values are in its units.
-        alpha: what a band marked as alpha holds; None for a mask, refused if it looks like data.
-        mask: a raster of the same size whose pixels other than 0 are left out (clouds).
+        alpha: what a band marked as alpha holds; None excludes pixels by it, and refuses one that looks like
+            data.
+        exclude: a raster of the same size whose pixels other than 0 are left out (clouds).
     """
 
     bands: tuple[int, ...] | None = None
     scale: tuple[float, float] | None = None
     alpha: AlphaMeaning | None = None
-    mask: Path | None = None
+    exclude: Path | None = None
 
 
 class RasterReader:
     """A raster that is read in windows, by several threads at once if need be.
 
-    What is valid `Validity` says, and the transparent entries of a colour table.
+    `Validity` says what is valid, as do the transparent entries of a colour table.
 
     Args:
         path: a file of one of the formats of `wnn2hdl.raster.formats`.
-        reading: how; its mask is not looked at here.
+        reading: how; `exclude` is not looked at here.
 
     Attributes:
-        height: pixels; likewise `width`.
+        height: pixels.
+        width: pixels.
         block: height and width of the blocks that the file is stored in.
         note: what had to be assumed about its bands and pages.
         files: what GDAL reads for it: the file itself and those beside it.
@@ -61,7 +63,7 @@ class RasterReader:
     Raises:
         InputError: the file cannot be read or points at others; its bands are not named; its samples have
             other than 8 bits, a scale or an offset and no scaling was given, or are complex; its alpha looks
-            like data and nobody says what it is; or it is stored in blocks too large to be read.
+            like data and it is not said what it is; or it is stored in blocks too large to be read.
         ExtraMissingError: rasterio is not installed.
     """
 
@@ -108,7 +110,7 @@ class RasterReader:
         turn = stored_orientation(self._path)
         if turn != _UPRIGHT:
             raise InputError(
-                f"the picture says that it is to be turned (orientation {turn})",
+                f"the picture is stored turned (orientation {turn})",
                 value=self._path,
                 hint="save it upright",
             )
@@ -152,7 +154,7 @@ class RasterReader:
 
 
 def stored_orientation(path: Path) -> int:
-    """How a picture is to be turned, as EXIF numbers it from 1, upright; 1 also where Pillow cannot tell."""
+    """How a picture is stored, as EXIF numbers it from 1, upright; 1 also where Pillow does not know."""
     try:
         # Pillow warns of large pictures and refuses larger ones; only the head is read here.
         with warnings.catch_warnings(action="ignore"), Image.open(path) as picture:
@@ -162,10 +164,10 @@ def stored_orientation(path: Path) -> int:
 
 
 def require_decodable(path: Path, height: int, width: int, *, hint: str = "cut it into tiles") -> None:
-    """Raise InputError if so many pixels are too many to be decoded at once."""
+    """Raise InputError if a picture has too many pixels to be decoded at once."""
     if height * width > MOST_PIXELS:
         raise InputError(
-            f"the picture is too large to be read at once, at most {MOST_PIXELS:,} pixels are",
+            f"the picture is too large to be read at once; the limit is {MOST_PIXELS:,} pixels",
             value=f"{path} ({width}x{height})",
             hint=hint,
         )

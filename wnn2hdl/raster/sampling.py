@@ -1,4 +1,4 @@
-"""Parts of a raster that stand for the whole, so that what is wrong with a large one is told at once."""
+"""Parts of a raster that stand for the whole, so that what is wrong with a large one is reported at once."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any

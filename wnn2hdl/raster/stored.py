@@ -21,7 +21,7 @@ class Stored:
     Attributes:
         samples: of one band, or of red, green and blue: ``[bands, height, width]`` of the file's type.
         valid: bool ``[height, width]``: which pixels the file does not leave out.
-        palette: uint8 ``[256, 4]``: red, green, blue and alpha of each sample; None if they are no indices.
+        palette: uint8 ``[256, 4]``: red, green, blue and alpha of each sample; None if they are not indices.
     """
 
     samples: NDArray[Any]

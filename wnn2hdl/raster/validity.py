@@ -1,4 +1,4 @@
-"""Which pixels a file states to be no data: by nodata values, a mask of its own, and alpha."""
+"""Which pixels a file states to be no data: by nodata values, its own mask, and alpha."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster.sampling import sampled
 
-AlphaMeaning = Literal["mask", "data"]
+AlphaMeaning = Literal["exclude", "data"]
 """What a band marked alpha holds: which pixels to leave out, or something else that is not looked at."""
 
 _MOST_PARTLY = 0.02
@@ -28,7 +28,7 @@ class Validity:
 
     Attributes:
         bands: number of bands read, without alpha.
-        mask: whether the file has a mask of its own, inside it or beside it.
+        mask: whether the file has its own mask, inside it or beside it.
         alpha: number of the band that is alpha and masks, from 1; None if there is none.
         nodata: of each band read; None if there is none. Not a number is never data.
         impossible: of each band read, whether no measurement can have that value.
@@ -61,7 +61,7 @@ class Validity:
 
     @property
     def partial(self) -> bool:
-        """Whether a pixel may be invalid by what is stated; samples that are no numbers come on top."""
+        """Whether a pixel may be invalid by what is stated; samples that are not numbers come on top."""
         return self.mask or self.alpha is not None or any(value is not None for value in self.nodata)
 
     def read(
@@ -111,7 +111,7 @@ def masking_alpha(
 ) -> int | None:
     """The band that is alpha and masks, from 1; None if there is none.
 
-    Programs mark the fourth band of any file of four as alpha unless told otherwise, so near-infrared often
+    Programs mark the fourth band of any file of four as alpha by default, so near-infrared often
     passes for it.
 
     Args:
@@ -140,5 +140,5 @@ def require_mask(parts: list[NDArray[Any]], path: Path) -> None:
         raise InputError(
             "a band is marked as alpha, and looks like data",
             value=f"{path} ({len(between) / count:.0%} of its pixels are neither clear nor opaque)",
-            hint="say --alpha data if it is (near-infrared, say), or --alpha mask to leave these pixels out",
+            hint="give --alpha data if it is (as near-infrared), or --alpha exclude to leave its pixels out",
         )

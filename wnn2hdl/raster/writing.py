@@ -1,4 +1,4 @@
-"""Class rasters: GeoTIFFs with a colour a class, written from top to bottom."""
+"""Class rasters: GeoTIFFs with one colour per class, written from top to bottom."""
 
 from pathlib import Path
 from types import TracebackType
@@ -20,7 +20,7 @@ _SMALLEST_OVERVIEW = 256
 
 
 def _incomplete(path: Path) -> InputError:
-    return InputError("the raster was not written whole", value=path, hint="the disk may be full")
+    return InputError("the raster was not written completely", value=path, hint="the disk may be full")
 
 
 class ClassWriter:
@@ -31,7 +31,7 @@ class ClassWriter:
     Args:
         path: the GeoTIFF.
         height: rows that will be written.
-        width: pixels a row.
+        width: pixels per row.
         georeference: kept as it is.
         colours: red, green, blue of each class, 0 to 255.
 

@@ -13,7 +13,7 @@ FORMAT = "wnn2hdl-baseline"
 VERSION = 1
 
 RIVALS = frozenset({"sobel"})
-"""Parts that a build is compared with and that are none of its own."""
+"""Parts that a build is compared with and that do not belong to it."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def recorded(report: Mapping[str, Any]) -> Recorded:
 def write_baseline(
     path: Path, reports: Mapping[str, Mapping[str, Any]], changes: Mapping[str, Sequence[str]]
 ) -> None:
-    """Record builds; the file is sorted, a line a figure, so that a change shows in a diff.
+    """Record builds; the file is sorted, one figure per line, so that a change shows in a diff.
 
     Args:
         path: the file.
@@ -54,18 +54,18 @@ def write_baseline(
         changes: for each build which of its files were changed after it was made.
 
     Raises:
-        CheckError: a build is not proved, or not as it was when it was: what may be wrong is nothing to
-            measure others by.
+        CheckError: a build is not proved, or not as it was when it was: its
+            figures may be wrong, so others cannot be measured by them.
         InputError: the file cannot be written.
     """
     for name, report in reports.items():
         if report["proof"]["status"] != "proved":
             raise CheckError(
-                "a build that is not proved makes no baseline", value=name, hint="compile it again"
+                "a build that is not proved cannot be a baseline", value=name, hint="compile it again"
             )
         if changes[name]:
             raise CheckError(
-                "a build that was changed makes no baseline",
+                "a build that was changed cannot be a baseline",
                 value=f"{name} ({', '.join(changes[name])})",
                 hint="compile it again",
             )

@@ -97,7 +97,7 @@ class ModelFigures:
         bits: names of the input bits of a model of pictures, code bit 0 first.
         bleaching: the threshold.
         saturation: for each class and RAM the share of its addresses that fire, 0 to 1.
-        training: what the model file notes about its training.
+        training: what the model file says about its training.
         kind: of the model, as its file has it.
     """
 
@@ -119,7 +119,7 @@ class EdgeFigures:
         name: of the pattern set.
         patterns: how many windows of 512 count as an edge.
         precision: share of its edge pixels that are near one of Canny's, 0 to 1.
-        recall: share of Canny's edge pixels that are near one of its own, 0 to 1.
+        recall: share of Canny's edge pixels that are near one of the filter's, 0 to 1.
         f1: their harmonic mean.
         imagery: the folder it was measured on; learned patterns may come from the same.
     """
@@ -134,7 +134,7 @@ class EdgeFigures:
 
 @dataclass(frozen=True)
 class PublishedFigure:
-    """A figure that others published and nobody measured here."""
+    """A figure that others published and that was not measured here."""
 
     what: str
     luts: int
@@ -155,7 +155,7 @@ PUBLISHED = (
 
 @dataclass(frozen=True)
 class BuildReport:
-    """Everything that is to be said about a build.
+    """Everything that is reported about a build.
 
     Attributes:
         name: of the build.

@@ -107,8 +107,8 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
                 most * 1.08, line + 0.12, "published", ha="right", va="top", color=MUTED, style="italic"
             )
 
-    told = ", ".join(f"{name} {luts}" for name, luts in measured)
-    title = f"LUTs by part. Measured: {told or 'nothing'}."
+    listed = ", ".join(f"{name} {luts}" for name, luts in measured)
+    title = f"LUTs by part. Measured: {listed or 'nothing'}."
     if quoted:
         title += f" Published by others: {', '.join(f'{name} {luts}' for name, luts in quoted)}."
     bar = _NARROW_BAR if narrow else _BAR
@@ -147,12 +147,12 @@ def cube_bars(minimised: Mapping[str, Mapping[str, int]], *, narrow: bool = Fals
         axes.set_ylim(len(minimised) - 0.5, -0.75)
         axes.set_xlabel("cubes, logarithmic: ○ as extracted, ● minimised")
 
-    told = "; ".join(
+    listed = "; ".join(
         f"{name} {sizes['cubes_before']} before, {sizes['cubes_after']} after"
         for name, sizes in minimised.items()
     )
     height = 0.55 * len(minimised) + 0.55
-    return _svg(paint, f"Cubes of each table. {told}.", "cubes", height, narrow=narrow)
+    return _svg(paint, f"Cubes of each table. {listed}.", "cubes", height, narrow=narrow)
 
 
 def scatter(points: Sequence[tuple[str, int, float]], *, narrow: bool = False) -> Markup:
@@ -179,8 +179,8 @@ def scatter(points: Sequence[tuple[str, int, float]], *, narrow: bool = False) -
         width = _NARROW_NAME if narrow else _NAME
         _label(axes, {place: _short(", ".join(shared), width) for place, shared in names.items()})
 
-    told = "; ".join(f"{name}: {x} LUTs, {100 * y:.2f} %" for name, x, y in points)
-    return _svg(paint, f"Accuracy against LUTs. {told}.", "scatter", 3.0, narrow=narrow)
+    listed = "; ".join(f"{name}: {x} LUTs, {100 * y:.2f} %" for name, x, y in points)
+    return _svg(paint, f"Accuracy against LUTs. {listed}.", "scatter", 3.0, narrow=narrow)
 
 
 _CORNERS = ((7, 5), (7, -14), (-7, 5), (-7, -14), (7, 19), (7, -28), (-7, 19), (-7, -28))
@@ -246,7 +246,7 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
 
 
 def _themed(figure: "Figure", title: str, prefix: str, *, narrow: bool) -> Markup:
-    """The figure as part of a page: no head, no fixed size, the page's colours and font, ids of its own."""
+    """The figure as part of a page: no head, no fixed size, the page's colours and font, its own ids."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()

@@ -139,9 +139,9 @@ def _number(what: str, before: float | None, after: float | None, *, kind: str, 
     if before is None or after is None or before == after:
         return Change(what, *texts, "" if before == after else "measured in one build only")
     difference = after - before
-    told = _points(difference) if kind == "percent" else f"{difference:+,}{' ps' * (kind == 'ps')}"
+    change = _points(difference) if kind == "percent" else f"{difference:+,}{' ps' * (kind == 'ps')}"
     judgement = "" if not good else "better" if difference * good > 0 else "worse"
-    return Change(what, *texts, told.replace("-", "\N{MINUS SIGN}"), judgement)
+    return Change(what, *texts, change.replace("-", "\N{MINUS SIGN}"), judgement)
 
 
 def _points(difference: float) -> str:

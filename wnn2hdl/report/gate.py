@@ -31,7 +31,7 @@ class Check:
         name: what was looked at; together with the build it occurs once.
         passed: whether it is as it must be.
         text: what was found, and what it was measured by.
-        better: whether it passed with something to spare, so that the baseline could be written anew.
+        better: whether it passed with something to spare, so that the baseline could be written again.
     """
 
     build: str
@@ -50,8 +50,8 @@ def run_gate(
     """Look at all builds.
 
     A build whose files were changed fails: what was proved and counted is no longer there. With a
-    baseline, a build or part that only one side knows fails: a build that nobody recorded would be guarded by
-    nothing, and one that went away would stop being guarded without a word.
+    baseline, a build or part that only one side knows fails: an unrecorded build would not be guarded, and
+    one that is gone would silently stop being guarded.
 
     Args:
         reports: the objects of `report.json` by the name of the build.

@@ -24,7 +24,7 @@ _FIGURES = {
 
 
 REPORT = "wnn2hdl report"
-"""Who makes an index, unless told otherwise; it stands in the page's head as its generator."""
+"""What makes an index by default; it stands in the page's head as its generator."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ class Grid:
 
     Attributes:
         across: inputs that the columns count through, the least significant last, as numbers are written.
-        down: inputs that the rows count through, likewise; empty for a table of one row.
+        down: inputs that the rows count through, in the same order; empty for a table of one row.
         columns: their values at each column, as in ``010``.
         rows: (values of `down`, output at each column) of each row.
     """

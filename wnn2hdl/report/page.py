@@ -71,7 +71,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class _Cell:
-    """What the page tells of a LUT, or of a multiplexer, which has no grid."""
+    """What the page says of a LUT, or of a multiplexer, which has no grid."""
 
     id: str
     name: str
@@ -191,7 +191,7 @@ def simulations(options: Mapping[str, Any]) -> dict[str, str]:
 
 
 def figures_of(report: Mapping[str, Any]) -> Callable[..., Markup]:
-    """A function that writes the figure at a path of a report, as an element that tells the path."""
+    """A function that writes the figure at a path of a report, as an element that names the path."""
 
     def figure(key: str, kind: str = "count") -> Markup:
         value: Any = report
@@ -236,7 +236,7 @@ def form(value: Any, kind: str = "count") -> str:
 
 
 def percent(share: float) -> str:
-    """A share from 0 to 1 with two decimals, or with as many as it takes not to be told as all or nothing."""
+    """A share from 0 to 1 with two decimals, or with as many as keep it from reading as 0 or 100 %."""
     digits = 2
     while 0 < share < 1 and float(f"{100 * share:.{digits}f}") in (0, 100) and digits < 12:
         digits += 1

@@ -21,7 +21,7 @@ _THEME = (
 
 @contextmanager
 def plot_style() -> Iterator[None]:
-    """While a figure is drawn, all that has no colour of its own is drawn in `INK`, on no ground."""
+    """While a figure is drawn, everything without its own colour is drawn in `INK`, on no ground."""
     # Not at the top: commands that draw nothing need not wait for it.
     from matplotlib import rc_context
 

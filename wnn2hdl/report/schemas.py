@@ -19,7 +19,7 @@ def check_report(report: Mapping[str, Any], path: Path) -> None:
     if report["target"] not in report["parts"]:
         raise ModelFileError(
             "not a report, or one of another version",
-            value=f"{path} (the target {report['target']} is none of its parts)",
+            value=f"{path} (the target {report['target']} is not one of its parts)",
             hint=hint,
         )
 

@@ -1,6 +1,6 @@
 """Town and country from the air: roads, houses, fields, woods, trees and rivers on an unbounded plane.
 
-Half a metre a pixel. What lies where hangs on the seed alone; the season changes fields, grass, water and
+At 0.5 m per pixel. What lies where depends on the seed alone; the season changes fields, grass, water and
 where the sun stands, so that two pictures of one place differ as a map and a later flight do.
 """
 

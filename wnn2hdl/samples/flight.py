@@ -1,6 +1,6 @@
 """The embedded flight: a map of town and country, and the frames of a UAV over it in another season.
 
-The map is a picture in the grid of `wnn2hdl.samples.georeference`, half a metre a pixel. Where the UAV is, is
+The map is a picture in the grid of `wnn2hdl.samples.georeference`, 0.5 m per pixel. Where the UAV is, is
 decided in that grid, and its latitude and longitude follow from it by the projection, so they are exact.
 The ground is the plane of the grid, without any height.
 """
@@ -52,7 +52,7 @@ class Flight:
             (column, row) lies at easting ``a * column + b * row + c``, northing ``d * column + e * row + f``.
         epsg: code of the map's coordinate system.
         camera: that takes the frames.
-        poses: true ones, a frame each.
+        poses: true ones, one per frame.
         noise: standard deviation of the frames' noise in grey levels.
     """
 
@@ -71,7 +71,7 @@ class Flight:
             number: of its pose, from 0.
 
         Returns:
-            uint8 ``[height, width, 3]`` in the other season's light. The ground goes on past the map.
+            uint8 ``[height, width, 3]`` in the other season's light. The ground continues past the map.
 
         Raises:
             ExtraMissingError: pyproj is not installed.
@@ -130,7 +130,7 @@ def make_flight(
         map_shape: height and width of the map, pixels of half a metre.
         frames: how many.
         frame_size: height and width of a frame, pixels.
-        focal_px: focal length; three quarters of the frame's width unless told.
+        focal_px: focal length; by default three quarters of the frame's width.
         height_m: mean height above ground.
         tilt_deg: of the camera, forward.
         distortion: of the lens, ``k1, k2, p1, p2[, k3]`` of OpenCV's model.

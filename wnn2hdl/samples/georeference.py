@@ -1,6 +1,6 @@
 """The coordinate system of the embedded flight's map against latitude, longitude and true north.
 
-It is UTM zone 20 south (EPSG:32720), over Rondônia. Two things tell the grid from the ground there:
+It is UTM zone 20 south (EPSG:32720), over Rondônia. The grid differs from the ground there in two things:
 
 - *grid convergence*: grid north is not true north; a vector of true azimuth a has the grid azimuth
   a - convergence (about -0.3 degrees here). The headings of poses are from true north, as a compass that

@@ -24,7 +24,7 @@ def write_landscapes(folder: Path, count: int, side: int, *, seed: int, progress
         count: landscapes.
         side: their height and width in pixels.
         seed: of the first; the others follow.
-        progress: told of each landscape.
+        progress: called with each landscape.
 
     Raises:
         InputError: a side without pixels, a negative seed, or a folder that cannot be written.

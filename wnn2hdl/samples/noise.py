@@ -55,9 +55,10 @@ def cell_random(seed: int, salt: int, row: NDArray[np.int32], column: NDArray[np
     """A number from 0 to 1 for every pixel that depends on its cell alone.
 
     Args:
-        seed: picture's seed; ``salt`` tells apart the numbers of one cell.
+        seed: picture's seed; ``salt`` distinguishes the numbers of one cell.
         salt: any small number.
-        row: cell row of each pixel, any sign; likewise ``column``.
+        row: cell row of each pixel, any sign.
+        column: cell column of each pixel, any sign.
         column: cell column of each pixel.
 
     Returns:

@@ -1,8 +1,8 @@
 """How people divide land: highways, roads within their meshes, and parcels down to single lots.
 
-Each mesh between two pairs of highways is cut in two again and again, the longer side first, at places of
-its own; cuts are roads, lanes or mere boundaries by how early they were made. Unlike a regular grid, no two
-places look alike, as navigation needs.
+Each mesh between two pairs of highways is cut in two again and again, the longer side first, at places
+of its own; cuts are roads, lanes or mere boundaries by how early they were made. Unlike a regular grid, no
+two places look alike, as navigation needs.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ _STREET = 3.5
 """Half widths in pixels of highways, of the cuts by age, and of later cuts in towns."""
 
 _FIELD_AREA, _LOT_AREA = 130.0**2, 52.0**2
-"""A field or a lot is cut no further if it is no larger, in square pixels."""
+"""A field or a lot of this size, in square pixels, is not cut further."""
 
 _TOWN_DEPTH, _STREET_DEPTH = 4, 8
 
@@ -42,7 +42,7 @@ class Parcels:
         along: float32 ``[height, width]``, the direction of one family of roads; furrows follow it.
         across: float32 ``[height, width]``, the other.
         town: bool ``[parcels]``, whether it is part of a town.
-        number: float32 ``[8, parcels]``, eight numbers in ``[0, 1)`` of its own.
+        number: float32 ``[8, parcels]``, eight numbers of the parcel in ``[0, 1)``.
     """
 
     index: NDArray[np.int32]

@@ -52,7 +52,7 @@ def plane_noise(seed: int, salt: int, window: Window, scale: float, octaves: int
     """Fractal noise: random numbers on a lattice, smoothed by cubic B-splines, and finer ones on top.
 
     Args:
-        seed: the plane's; ``salt`` tells its fields apart.
+        seed: the plane's; ``salt`` distinguishes its fields.
         salt: any small number; a field of several octaves takes ``salt`` alone.
         window: where.
         scale: pixels between the coarsest lattice's points, at least 1; each octave halves it.

@@ -1,6 +1,6 @@
 """What a camera under a UAV sees of flat ground, one ray for each pixel.
 
-Nothing here knows of homographies: the picture that code which uses them is tested against must not come
+Nothing here uses homographies: code that uses them is tested against these pictures, which must not come
 from the same formula.
 
 Axes: north, east, down; of the body forward, right, down; of the camera right, image-down, and the
@@ -24,8 +24,8 @@ LOWEST_SINE = 0.1
 _EXACT_PX = 1e-6
 _MOST_ITERATIONS = 200
 _LEAST_RADIAL = 0.2
-"""The inverse of a distortion is found to this part of a pixel, in so many steps, or it is none: where the
-radial factor comes near zero, two pixels share a ray."""
+"""The inverse of a distortion is found to this part of a pixel in this many steps, or does not exist: where
+the radial factor comes near zero, two pixels share a ray."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class SamplePose:
     Attributes:
         frame: name of the frame's file.
         latitude_deg: WGS 84, north positive.
-        longitude_deg: WGS 84, east positive.
+        longitude_deg: WGS 84, east positive; NaN if not known.
         height_m: of the camera above the ground, metres.
         yaw_deg: heading, clockwise from true north.
         pitch_deg: nose up positive.
@@ -165,8 +165,8 @@ def look_up(
 
     Args:
         picture: uint8 ``[height, width, 3]``.
-        rows: places ``S``, 0 at the first pixel's centre; past the border its pixels go on.
-        columns: likewise.
+        rows: places ``S``, 0 at the first pixel's centre; past the border its pixels are repeated.
+        columns: the same for columns.
 
     Returns:
         float64 ``S + (3,)``. Exact, unlike OpenCV's remap, which rounds places to 1/32 pixel.

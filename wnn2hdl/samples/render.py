@@ -48,7 +48,7 @@ def landscape(height: int, width: int, seed: int, *, season: Season = "dry") -> 
     Args:
         height: pixels, at least 1.
         width: pixels, at least 1.
-        seed: at least 0; the layout and all noise hang on it.
+        seed: at least 0; the layout and all noise depend on it.
         season: pastures are tan in the dry season and green in the wet.
 
     Returns:

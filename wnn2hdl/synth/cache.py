@@ -40,7 +40,7 @@ def load(kind: str, key: Mapping[str, str]) -> dict[str, Any] | None:
         The result; None where there is nothing, or a file that is damaged or was made from something else.
     """
     path = location(kind, key)
-    if not path.is_file():  # reading a pipe in its place could wait for ever
+    if not path.is_file():  # reading a pipe in its place could wait forever
         return None
     try:
         checksum, _, text = path.read_text(encoding="utf-8").partition("\n")

@@ -114,7 +114,7 @@ def synthesise(verilog: str, top: str, *, baseline: bool = False) -> Synthesis:
         baseline: count leftover inverters as free.
 
     Raises:
-        InputError: `top` is no Verilog identifier.
+        InputError: `top` is not a Verilog identifier.
         ToolError: there is no Yosys, or it fails: its ``ERROR:`` line is the value.
         CheckError: the netlist has a cell that the count does not know.
     """

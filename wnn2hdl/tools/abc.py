@@ -11,7 +11,7 @@ from wnn2hdl.tools.runner import run
 from wnn2hdl.tools.yosys import find_yosys
 
 # ABC ends with status 0 after nearly every error (measured, yosys-abc of pyosys 0.70): an unknown command, a
-# file it cannot open and a network that is empty are told by these lines only.
+# file it cannot open and a network that is empty are reported by these lines only.
 _ERROR = re.compile(r"\*\* cmd error|Error\b|Cannot |.*\bfailed\b|Empty network|There is no current network")
 
 # `print_stats` prints its colours into files too.
@@ -36,7 +36,7 @@ def find_abc() -> Path:
 
 @functools.cache
 def abc_version() -> str:
-    """What tells this ABC from others: the Yosys that it came with, ``pyosys 0.70``, or when it was compiled.
+    """What identifies this ABC: the Yosys that it came with, ``pyosys 0.70``, or when it was compiled.
 
     Every ABC of the last ten years calls itself 1.01.
 
@@ -51,7 +51,7 @@ def abc_version() -> str:
 
 
 def run_abc(script: str, *, timeout: float, cwd: Path | None = None) -> str:
-    """Run a script of ABC commands, one a line or parted by semicolons, in a new process.
+    """Run a script of ABC commands, one per line or separated by semicolons, in a new process.
 
     Args:
         script: the commands.
@@ -65,12 +65,12 @@ def run_abc(script: str, *, timeout: float, cwd: Path | None = None) -> str:
         ToolError: there is no ABC, it crashed (it does on malformed truth tables), it printed an error, or it
             ran out of time.
     """
-    # On standard input ABC behaves as in a terminal and goes on after an error; a sourced file stops at it.
+    # On standard input ABC behaves as in a terminal and continues after an error; a sourced file stops at it.
     command = [str(find_abc()), "-q", "source -s /dev/stdin"]
     output = _COLOUR.sub("", run(command, stdin=script, cwd=cwd, timeout=timeout).output)
     errors = [line for line in output.splitlines() if _ERROR.match(line)]
     if errors:
-        # "aborting" only repeats that another line tells of an error.
+        # "aborting" only repeats that another line reports an error.
         raise ToolError(
             "yosys-abc failed",
             value=next((line for line in errors if "aborting" not in line), errors[0]),

@@ -1,4 +1,4 @@
-"""Jobs on many machines, by Dask distributed: a few a core at a time, and a dying worker loses nothing."""
+"""Jobs on many machines, by Dask distributed: a few per core at a time, and a dying worker loses nothing."""
 
 import platform
 from collections.abc import Callable, Generator, Iterable, Mapping
@@ -36,7 +36,7 @@ def run_on_cluster(
 
     A worker that dies loses nothing: its jobs, and the shared value if it held the only copy, are made again
     elsewhere. A job that was under way on several workers as they died is run again all alone when all others
-    are done, since a dying worker takes along what is queued on it.
+    are done, since a dying worker loses what is queued on it.
 
     Args:
         scheduler: its address: ``tcp://host:8786``.

@@ -92,7 +92,7 @@ _PROGRAMS: tuple[tuple[str, str, Callable[[], str], bool], ...] = (
 
 
 def _extra(extra: str) -> Part:
-    """Whether every package of an extra is here in a version that will do."""
+    """Whether every package of an extra is here in a version that suffices."""
     found, faults = [], []
     for requirement in map(Requirement, requires(PACKAGE) or ()):
         if requirement.marker is None or not requirement.marker.evaluate({"extra": extra}):

@@ -48,7 +48,7 @@ def run(
 ) -> Completed:
     """Run a program to its end.
 
-    The program leads a process group of its own, which is killed as a whole when the time is up or when this
+    The program leads its own process group, which is killed as a whole when the time is up or when this
     call is interrupted, so no grandchild (an ABC that Yosys started) stays behind.
 
     Args:
@@ -64,7 +64,7 @@ def run(
     Raises:
         ToolStoppedError: the time is up, or someone killed the program, as a system without memory does.
         ToolError: the binary cannot be started, the exit status is not one of `ok_statuses`, or a line of the
-            output matches `error_line`. Its value is the line that tells why, where there is one.
+            output matches `error_line`. Its value is the line that says why, if there is one.
     """
     line = shlex.join(str(word) for word in command)
     binary = Path(command[0]).name
@@ -173,7 +173,7 @@ class _Batch:
     def add(self, process: "subprocess.Popen[str]") -> None:
         with self.lock:
             if self.closed:
-                raise ToolStoppedError("stopped, since the work around it has ended")
+                raise ToolStoppedError("stopped, because the work around it has ended")
             self.processes.add(process)
 
     def remove(self, process: "subprocess.Popen[str]") -> None:

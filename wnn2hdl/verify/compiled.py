@@ -1,6 +1,6 @@
 """Fast simulation of emitted Verilog in Verilator or Icarus: many samples in one run.
 
-A generated testbench reads the samples from a binary file, applies one a time unit and writes the outputs;
+A generated testbench reads the samples from a binary file, applies one per time unit and writes the outputs;
 the same testbench runs in both simulators. Verilator compiles it to a program first, Icarus interprets it.
 """
 

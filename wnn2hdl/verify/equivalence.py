@@ -10,10 +10,10 @@ What is not a function of the inputs is refused: undriven, doubly driven and loo
 and each ``x`` is made a free input (``setundef -anyseq``), which shows in the graph's count of inputs.
 
 A pipeline of latency L answers L clock edges after its inputs. Its graph is unrolled over L + 1 cycles, and
-its last outputs are compared as a function of its first inputs. All that may not matter is a free input of
-its own: what the registers hold at first, and the inputs of all later cycles. A path with a register too few
-or too many, a register whose contents survive, or an enable makes the outputs depend on these, and the
-circuits differ. All registers have to be clocked by the rising edge of the port ``clk``.
+its last outputs are compared as a function of its first inputs. Everything that must not matter is a
+separate free input: what the registers hold at first, and the inputs of all later cycles. A path with a
+register too few or too many, a register whose contents survive, or an enable makes the outputs depend on
+these, and the circuits differ. All registers have to be clocked by the rising edge of the port ``clk``.
 """
 
 import re
@@ -218,7 +218,7 @@ def _read(circuit: Circuit, number: int, folder: Path) -> list[str]:
 
 
 def _read_cells(circuits: Sequence[Circuit]) -> list[str]:
-    """Commands that keep the models of 7-series cells at hand, where there is need of them."""
+    """Commands that keep the models of 7-series cells at hand, where they are needed."""
     needed = any(_cells(circuit) for circuit in circuits)
     return ["read_verilog +/xilinx/cells_sim.v", "design -stash cells"] if needed else []
 
@@ -229,7 +229,7 @@ def _cells(circuit: Circuit) -> set[str]:
 
 
 def _checked(graph: Path, ports: Path, circuit: Circuit) -> _Graph:
-    """Refuse a graph that is no function of the circuit's inputs (AIGER header: ``aig M I L O A``)."""
+    """Refuse a graph that is not a function of the circuit's inputs (AIGER header: ``aig M I L O A``)."""
     header = graph.read_bytes().split(b"\n", 1)[0].split()
     inputs, registers, outputs = (int(field) for field in header[2:5])
     named: dict[str, dict[int, tuple[str, int]]] = {"input": {}, "output": {}}

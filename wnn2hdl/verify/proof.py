@@ -15,7 +15,7 @@ A neighbourhood's window is not held: the class bits of both sides are masked by
 The mask is one function of the inputs on both sides, so masked outputs are equal for all windows exactly if
 the outputs are equal for the cared-for ones.
 
-A pipeline is in the wrapper with its registers, and is equal to the reference so many cycles later
+A pipeline is in the wrapper with its registers, and is equal to the reference its latency later
 (`wnn2hdl.verify.equivalence`); a mask that reads an input passes as many registers as the pipeline has.
 
 The care set is not empty (`wnn2hdl.verify.specification.flags_of` refuses that), so no claim holds vacuously.
@@ -190,7 +190,7 @@ def _against_model(claim: Claim, circuit: Circuit, values: Mapping[str, int]) ->
     expected = {port: word_values(bits)[0] for port, bits in claim.answers(samples).items()}
     actual = _answers(claim, circuit, held)
     if actual == expected and not circuit.latency:
-        raise ToolError("ABC's counterexample is none: circuit and model agree on it", value=held)
+        raise ToolError("ABC's counterexample is wrong: circuit and model agree on it", value=held)
     return Counterexample(claim.part, held, expected, actual)
 
 

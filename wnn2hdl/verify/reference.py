@@ -3,9 +3,9 @@
 No table, cover, network or hardware library lies between the model and this text: discriminators are RAMs,
 sums and comparisons as in the definition of a WiSARD.
 
-A RAM of constants is written as a decision diagram: a tree of multiplexers, one address bit a level, in which
-equal halves are shared. Indexing one constant vector says the same, but Yosys takes eight times as long to
-map it (measured for a vector of 4096 bits).
+A RAM of constants is written as a decision diagram: a tree of multiplexers, one address bit per level, in
+which equal halves are shared. Indexing one constant vector would be equivalent, but Yosys takes eight times
+as long to map it (measured for a vector of 4096 bits).
 """
 
 from collections.abc import Mapping, Sequence

@@ -22,7 +22,7 @@ Bench = Callable[[Any], Coroutine[Any, Any, None]]
 
 _REPORT_EVERY = 2048
 _PERIOD = 10e-9
-"""Seconds a vector takes in a recording."""
+"""Seconds that a vector takes in a recording."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def _bench(
             row = rows[i]
             changed = [port for port, value in enumerate(row) if value != last[port]]
             last = row
-            # `set` returns once all that depends on its ports has settled, so it is called once a vector.
+            # `set` returns once all that depends on its ports has settled, so it is called once per vector.
             if len(changed) == 1:
                 ctx.set(sources[changed[0]], row[changed[0]])
             elif changed:

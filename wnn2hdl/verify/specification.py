@@ -95,12 +95,12 @@ def flags_of(care: CareSet, width: int, what: str) -> NDArray[np.bool_]:
         what: whose codes they are, for the errors.
 
     Raises:
-        InputError: it is one of codes of another width, or empty: any circuit would equal the model on no
-            input at all.
+        InputError: it has codes of another width, or is empty: any circuit would equal the model on no input
+            at all.
     """
     if care.width != width:
         raise InputError(
-            f"the care set of the {what} is one of other codes", value=f"{care.width} bits, not {width}"
+            f"the care set of the {what} has other codes", value=f"{care.width} bits, not {width}"
         )
     flags = care.project(tuple(range(width)))
     if not flags.any():

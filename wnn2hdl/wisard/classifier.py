@@ -16,7 +16,7 @@ from wnn2hdl.wisard.mapping import draw_mapping
 
 
 class WisardClassifier(ClassifierMixin, BaseEstimator):
-    """One discriminator a class, trained one against all; the one with the most firing RAMs wins.
+    """One discriminator per class, trained one against all; the one with the most firing RAMs wins.
 
     The inputs are bits: ``X`` holds bools, or numbers that are all 0 or 1. Put an encoder in front of other
     features, such as `wnn2hdl.encode.ThermometerEncoder`. Ties go to the class that comes first in
@@ -25,8 +25,8 @@ class WisardClassifier(ClassifierMixin, BaseEstimator):
     Args:
         address_bits: n, address bits of a RAM. Ignored if a mapping is given.
         rams: k, RAMs of a discriminator. Ignored if a mapping is given.
-        mapping: which inputs each RAM reads: ``[k, n]``, or ``[classes, k, n]`` for a mapping a class; drawn
-            by `draw_mapping` if left out.
+        mapping: which inputs each RAM reads: ``[k, n]``, or ``[classes, k, n]`` for one mapping per class;
+            drawn by `draw_mapping` if left out.
         bleaching: the count from which a RAM fires, or ``"auto"``: the threshold with the best leave-one-out
             accuracy on the samples passed to `fit` or last passed to `partial_fit`.
         random_state: seed of the mapping.
@@ -101,7 +101,7 @@ class WisardClassifier(ClassifierMixin, BaseEstimator):
 
     @property
     def saturation_(self) -> NDArray[np.float64]:
-        """Share of each RAM's addresses that fire, ``[classes, k]``; a RAM at 1 tells nothing."""
+        """Share of each RAM's addresses that fire, ``[classes, k]``; a RAM at 1 carries no information."""
         check_is_fitted(self)
         return np.asarray((self.counts_ >= self.bleaching_).mean(axis=2))
 
@@ -116,7 +116,9 @@ class WisardClassifier(ClassifierMixin, BaseEstimator):
         """
         check_is_fitted(self)
         if encoder.width != self.n_features_in_:
-            raise ValueError(f"the encoder makes {encoder.width} bits, trained were {self.n_features_in_}")
+            raise ValueError(
+                f"the encoder makes {encoder.width} bits; the classifier was trained on {self.n_features_in_}"
+            )
         names = tuple(str(label) for label in self.classes_)
         return WisardModel(encoder, names, self.mapping_, self.counts_, self.bleaching_)
 

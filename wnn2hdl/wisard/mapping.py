@@ -30,7 +30,7 @@ def draw_mapping(bits: int, rams: int, address_bits: int, seed: int) -> NDArray[
         raise InputError("a discriminator needs at least one RAM", value=rams, hint="choose 1 or more")
     if not 1 <= address_bits <= MAX_TABLE_INPUTS:
         raise InputError(
-            "a RAM cannot have so many address bits",
+            "a RAM cannot have this number of address bits",
             value=address_bits,
             hint=f"choose 1 to {MAX_TABLE_INPUTS}",
         )

@@ -19,7 +19,7 @@ def train_histogram(
     bleaching: int,
     training: dict[str, Any] | None = None,
 ) -> WisardModel:
-    """Train on the number of times each code occurs, which is all that the RAMs can tell apart.
+    """Train on the number of times each code occurs, which is all that the RAMs can distinguish.
 
     The counts are those of training on the pixels one by one. They are not evened out between the classes:
     over 8 splits of 30 Sentinel-2 scenes by image, scaling the classes to equal totals lowered the mean
@@ -31,7 +31,7 @@ def train_histogram(
         classes: class names; the first is the background.
         mapping: int64 ``[1 or classes, k, n]``, as `draw_mapping` gives it.
         bleaching: the threshold, as `choose_bleaching` finds it.
-        training: what to note in the model's `WisardModel.training`.
+        training: what to record in the model's `WisardModel.training`.
 
     Raises:
         InputError: a class has no pixels, or the discriminators are larger than a model may have them.

@@ -14,7 +14,7 @@ CHUNK_ENTRIES = 1 << 22
 
 
 def chunks(patterns: int, entries: int) -> Iterator[slice]:
-    """Slices of the patterns, so many that arrays of ``entries`` a pattern stay below `CHUNK_ENTRIES`."""
+    """Slices of the patterns, in which arrays of ``entries`` per pattern stay below `CHUNK_ENTRIES`."""
     step = max(1, CHUNK_ENTRIES // entries)
     for start in range(0, patterns, step):
         yield slice(start, start + step)

@@ -45,7 +45,7 @@ def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path, monkeypatch: 
     }
     assert all((tmp_path / link).is_file() for link in links)
     assert made.reference.failure is made.smallest.failure is None
-    assert made.smallest.report["parts"]["pixel"]["luts"] <= demo.MAX_LUTS
+    assert made.smallest.report["parts"]["pixel"]["luts"] <= demo.LUTS_PER_PIXEL
     assert made.windows == (demo.SIDE - 2) ** 2
     assert made.flight is not None
     (*_, whole) = made.flight.result.searches
@@ -79,7 +79,7 @@ def test_a_folder_that_is_no_build_is_told_before_the_first_stage(tmp_path: Path
     (tmp_path / "smallest").mkdir()
     (tmp_path / "smallest" / "notes.txt").write_text("mine")
     steps: list[str] = []
-    with pytest.raises(InputError, match=r"the output exists and is no earlier build: .*smallest"):
+    with pytest.raises(InputError, match=r"the output exists and is not an earlier build: .*smallest"):
         demo.run_demo(tmp_path, 0, lambda step, *_: steps.append(step))
     assert steps == []
     assert [path.name for path in tmp_path.iterdir()] == ["smallest"]

@@ -62,10 +62,12 @@ def test_the_same_inputs_give_the_same_bytes(
 @pytest.mark.parametrize("style", ["equations", "cells"])
 def test_a_pixel_alone_in_both_styles(model: WisardModel, tmp_path: Path, style: str) -> None:
     options = CompileOptions(target="pixel", style=style)  # type: ignore[arg-type]
-    told: list[tuple[str, int]] = []
-    built = compile_model(model, tmp_path / "pixel", options, lambda step, done, _: told.append((step, done)))
+    reported: list[tuple[str, int]] = []
+    built = compile_model(
+        model, tmp_path / "pixel", options, lambda step, done, _: reported.append((step, done))
+    )
     assert built.failure is None
-    starts = [step for step, done in told if done == 0]
+    starts = [step for step, done in reported if done == 0]
     assert starts == [
         "minimising tables",
         "writing Verilog",
@@ -129,10 +131,10 @@ def test_a_target_without_a_classifier_has_neither_accuracy_nor_codes(
     tables = ["edge"] if target == "edge" else []
     assert list(report["minimised"]) == list(report["options"]["mapping"]) == tables
     assert report["edges"]["patterns"] == report["options"]["edge_patterns"] == (240 if tables else None)
-    told = (folder / "report.md").read_text() + (folder / "report.html").read_text()
-    assert ("Edge patterns" in told) == ("## Answers" in told) == (target == "edge")
+    reported = (folder / "report.md").read_text() + (folder / "report.html").read_text()
+    assert ("Edge patterns" in reported) == ("## Answers" in reported) == (target == "edge")
     for word in ("Accuracy of the circuit", "accuracy of the circuit", "odes cared for"):
-        assert word not in told
+        assert word not in reported
 
 
 def test_a_pixel_alone_has_no_edge_filter(pixel_build: Path) -> None:

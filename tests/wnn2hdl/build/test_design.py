@@ -83,7 +83,7 @@ def foreign(data: dict[str, Any]) -> None:
         (aimed, "the model cannot be the target neighbourhood"),
         (unknown, "nothing is known about the circuit sobel"),
         (exact, "pixel has don't-cares in exact mode"),
-        (commented, "is no line of a comment"),
+        (commented, "is not a line of a comment"),
         (newer, "not a design of this wnn2hdl"),
         (foreign, "the design was made from another model"),
     ],

@@ -1,4 +1,4 @@
-"""What a folder of pictures tells the compiler."""
+"""What the compiler learns from a folder of pictures."""
 
 from pathlib import Path
 
@@ -31,9 +31,9 @@ def test_a_survey_counts_every_pixel_and_every_window(model: WisardModel, imager
 
 
 def test_progress_is_told_of_every_picture(model: WisardModel, imagery: Path) -> None:
-    told: list[tuple[int, int]] = []
-    survey(model, Imagery(imagery, Reading()), lambda _, done, total: told.append((done, total)))
-    assert told == [(0, 2), (1, 2), (2, 2)]
+    reported: list[tuple[int, int]] = []
+    survey(model, Imagery(imagery, Reading()), lambda _, done, total: reported.append((done, total)))
+    assert reported == [(0, 2), (1, 2), (2, 2)]
 
 
 def test_learned_patterns_agree_with_canny_at_least_as_well_as_any_boundary(

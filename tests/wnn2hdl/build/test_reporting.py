@@ -64,8 +64,8 @@ def test_the_command_finds_its_imagery_from_the_folder_that_it_is_run_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    told = command("x", CompileOptions(care=Path("imagery"), edges="patterns.txt"))
-    assert told.endswith(f"--care {tmp_path}/imagery --edges {tmp_path}/patterns.txt")
+    line = command("x", CompileOptions(care=Path("imagery"), edges="patterns.txt"))
+    assert line.endswith(f"--care {tmp_path}/imagery --edges {tmp_path}/patterns.txt")
     assert command("x", CompileOptions(edges="learned")).endswith("--edges learned")
     options = CompileOptions(test_images=Path("a b"), test_masks=Path("c"), palette=Path("p.json"))
     assert evaluation("x", options) == (
@@ -145,7 +145,7 @@ def test_a_build_is_given_once_however_its_path_is_spelled(
 
 def test_a_name_that_is_no_utf8_is_refused(write_build: Callable[..., Path], tmp_path: Path) -> None:
     folder = write_build(tmp_path / "b\udcff", name="b")
-    with pytest.raises(InputError, match=r"the name of a folder is no UTF-8: .*/b\\xff; rename it"):
+    with pytest.raises(InputError, match=r"the name of a folder is not UTF-8: .*/b\\xff; rename it"):
         open_entries([folder], tmp_path / "i.html")
 
 

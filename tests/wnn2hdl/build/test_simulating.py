@@ -1,4 +1,4 @@
-"""Simulation in a process of its own says what it says in this one."""
+"""Simulation in its own process says what it says in this one."""
 
 from dataclasses import replace
 from pathlib import Path

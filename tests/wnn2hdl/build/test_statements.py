@@ -67,7 +67,7 @@ def test_nothing_of_a_build_is_foreign_to_it(pixel_build: Path) -> None:
     assert foreign_text(design, report, pixel_build) == []
     contradictions = false_statements(design, report, {})
     assert contradictions == [
-        f"report.json has parts.{part}, which is no part of the build" for part in report["parts"]
+        f"report.json has parts.{part}, which is not a part of the build" for part in report["parts"]
     ]
 
 

@@ -16,7 +16,7 @@ class Done(NamedTuple):
     stderr: str
 
     def complaint(self) -> str:
-        """The one line that tells of bad usage or bad input."""
+        """The one line that reports bad usage or bad input."""
         assert self.status == 2, self.stderr
         assert self.stdout == ""
         (line,) = self.stderr.splitlines()
@@ -24,7 +24,7 @@ class Done(NamedTuple):
         return line
 
     def complaint_after_work(self) -> str:
-        """Likewise, of what went wrong after some progress was shown."""
+        """The same for what went wrong after some progress was shown."""
         assert " % " in self.stderr
         return self._replace(stderr=self.stderr.splitlines()[-1]).complaint()
 

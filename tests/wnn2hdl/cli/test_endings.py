@@ -24,7 +24,7 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def start(*words: object, stdout: int = subprocess.DEVNULL, limit: int = 0) -> "subprocess.Popen[str]":
-    """A command in a process of its own, in whose files are ``limit`` bytes at most."""
+    """A command in its own process, in whose files are ``limit`` bytes at most."""
     limits = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (limit, limit)) if limit else None
     return subprocess.Popen(
         [*WNN2HDL, *map(str, words)],

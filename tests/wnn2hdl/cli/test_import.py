@@ -47,13 +47,13 @@ def test_the_text_says_what_the_model_reads(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("--format", "onnx"), "'onnx' is none of wisardpkg, bthowen, dwn, kanele, aiger, blif"),
+        (("--format", "onnx"), "'onnx' is not one of wisardpkg, bthowen, dwn, kanele, aiger, blif"),
         (("--format", "blif"), "not a BLIF file, or a damaged one"),
         (
             ("--classes", "3"),
-            "an option says nothing about an and-inverter graph (AIGER): --classes; leave it out",
+            "an option does not apply to an and-inverter graph (AIGER): --classes; leave it out",
         ),
-        (("--bleaching", "0"), "0 is not in the range"),
+        (("--bleach", "0"), "0 is not in the range"),
     ],
 )
 def test_nothing_is_written_where_something_is_wrong(

@@ -96,7 +96,7 @@ def test_options_that_a_neighbourhood_has_no_use_for_are_refused(run: Run, tmp_p
 
     assert "--neighbourhood chooses the classifier itself: --rams" in train("--rams", "4")
     assert "leave --neighbourhood out" in train("--pareto")
-    assert "takes 13 LUTs: 4 allowed" in train("--max-luts", "4")
+    assert "takes 13 LUTs: 4 allowed" in train("--luts-per-pixel", "4")
 
 
 def test_pixels_left_out_are_reported_and_the_command_can_be_repeated(

@@ -64,7 +64,7 @@ def test_frames_to_calibrate_on_may_lie_elsewhere(run: Run, folder: Path, tmp_pa
     lines = (folder / "poses.csv").read_text().splitlines()
     (tmp_path / "new").mkdir()
     names = [line.split(",")[0] for line in lines[1:]]
-    # The camera counted anew: the same name, another frame.
+    # The camera started to count again: the same name, another frame.
     for number, name in enumerate(names[3:], start=1):
         (tmp_path / "new" / f"frame_{number}.jpg").write_bytes((folder / "frames" / name).read_bytes())
     new, known = tmp_path / "new.csv", tmp_path / "known.csv"
@@ -99,8 +99,8 @@ def test_what_one_run_learned_another_takes(run: Run, folder: Path, tmp_path: Pa
     assert one["frames"] == two["frames"] == 2
     for figure in ("mean_m", "fixed_percent", "confidence_threshold"):
         assert two["methods"]["grey"][figure] == one["methods"]["grey"][figure]
-    told = run("locate", *common, "--focal", 121, *taking).complaint_after_work()
-    assert "belongs to other conditions: fx was 120.0, and now is 121.0" in told
+    reported = run("locate", *common, "--focal", 121, *taking).complaint_after_work()
+    assert "belongs to other conditions: fx was 120.0, and now is 121.0" in reported
 
 
 @pytest.mark.parametrize(
@@ -146,8 +146,8 @@ def test_no_thread_is_left_behind_when_it_ends_early(folder: Path, tmp_path: Pat
     if stop == "interrupt":
         time.sleep(6)
         running.send_signal(signal.SIGINT)
-    _, told = running.communicate(timeout=120)
-    assert running.returncode == (2 if stop == "frame" else 130), told
+    _, reported = running.communicate(timeout=120)
+    assert running.returncode == (2 if stop == "frame" else 130), reported
     assert not (tmp_path / "out").exists()
 
 
@@ -169,15 +169,18 @@ def test_the_embedded_flight_needs_no_files(
         (["--focal", "750"], "the embedded flight has its own camera and map: --focal"),
         (["--calibrate", "some.csv"], "the embedded flight has no file of poses"),
         (["--calibrate", "3"], "3 frames are too few to calibrate on; give at least 4"),
-        (["--calibrate-frames", "."], "--calibrate-frames are those of a CSV of --calibrate"),
+        (["--calibrate-frames", "."], "--calibrate-frames goes with a CSV file in --calibrate"),
         (["--calibrate", "all"], "neither a count nor a CSV"),
         (["--window", "0"], "--window"),
-        (["--window", "nan"], "no finite number"),
+        (["--window", "nan"], "not a finite number"),
         (["--search", "around"], "--search"),
-        (["--methods", "grey,canny"], "'canny' is none of perspective-canny, rotation-canny"),
+        (["--methods", "grey,canny"], "'canny' is not one of perspective-canny, rotation-canny"),
         (["--bands", "3,2,1"], "--bands, --scale and --alpha are for a map from a file"),
         (["--calibration", "none.json"], "cannot read a calibration: none.json"),
-        (["--calibration", "some.json", "--calibrate", "4"], "--calibration takes what --calibrate learned"),
+        (
+            ["--calibration", "some.json", "--calibrate", "4"],
+            "--calibration takes what an earlier --calibrate learned",
+        ),
     ],
 )
 def test_bad_usage_is_one_line_and_status_2(
@@ -192,8 +195,8 @@ def test_bad_usage_is_one_line_and_status_2(
 
 
 def test_too_few_frames_are_told_once_the_flight_is_there(run: Run) -> None:
-    told = run("locate", "--calibrate", "9").complaint_after_work()
-    assert "too few frames are left to score: 9 of 10 calibrate" in told
+    reported = run("locate", "--calibrate", "9").complaint_after_work()
+    assert "too few frames are left to score: 9 of 10 calibrate" in reported
 
 
 def test_a_place_that_cannot_be_written_is_told_before_the_work(run: Run, tmp_path: Path) -> None:
@@ -206,12 +209,12 @@ def test_bad_files_are_one_line_and_status_2(run: Run, folder: Path, tmp_path: P
         assert fault in run("locate", *arguments, "-o", tmp_path / "out").complaint()
 
     files = given(folder)
-    refused(files, "nothing is known of the camera")
-    refused([*files, "--focal", "120", "--camera", "c.toml"], "both tell the focal length")
+    refused(files, "the camera is not known")
+    refused([*files, "--focal", "120", "--camera", "c.toml"], "both give the focal length")
     refused([*files, "--camera", str(tmp_path / "none.toml")], "cannot read the camera")
     bad = tmp_path / "poses.csv"
     bad.write_text(POSE + "frame_1.jpg,north,0,50,0,0,0\n")
-    refused([*files[:5], str(bad), "--focal", "120"], "latitude_deg is no number: 'north'")
+    refused([*files[:5], str(bad), "--focal", "120"], "latitude_deg is not a number: 'north'")
     bad.write_text(POSE + "gone.jpg,24,120,50,0,0,0\n")
     refused([*files[:5], str(bad), "--focal", "120"], "a frame of the poses is missing")
     refused([*files, "--focal", "120", "--calibrate", str(folder / "poses.csv")], "no frame is left to score")

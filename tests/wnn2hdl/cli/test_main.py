@@ -94,7 +94,7 @@ def test_ctrl_c_in_the_middle_leaves_nothing(tmp_path: Path) -> None:
     _, errors = running.communicate(timeout=60)
     assert running.returncode == 130, errors
     assert "Traceback" not in errors
-    assert errors.splitlines()[-1] == "wnn2hdl: interrupted; nothing half-written was left"
+    assert errors.splitlines()[-1] == "wnn2hdl: interrupted; no half-written file is left"
     assert {path.name for path in tmp_path.iterdir()} <= {"m.json", "cache", ".cache"}
 
 

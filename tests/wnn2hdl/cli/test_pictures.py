@@ -156,7 +156,7 @@ def test_every_command_refuses_the_same_in_the_same_words(
         done = run(*words)
         assert done.status == 2, (command, done)
         assert done.stdout == ""
-        # What was told of the progress stands above.
+        # The reported progress stands above.
         said[command] = done.stderr.splitlines()[-1]
         assert "Traceback" not in done.stderr
         assert said[command].startswith("wnn2hdl: ")

@@ -16,7 +16,7 @@ Run = Callable[..., Any]
 
 @pytest.fixture
 def report(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
-    """The command in a folder of its own."""
+    """The command in its own folder."""
     monkeypatch.chdir(tmp_path)
     return partial(run, "report")
 
@@ -62,7 +62,7 @@ def test_what_is_no_build_is_passed_over(report: Run, builds: tuple[Path, Path])
     status, out, err = report(*sorted(Path("build").iterdir()))
     assert status == 0
     assert "build/index.html" in out
-    assert err == "wnn2hdl: passed over, since it is no build: build/model.json build/pictures\n"
+    assert err == "wnn2hdl: skipped, since it is not a build: build/model.json build/pictures\n"
 
 
 def test_a_baseline_holds_until_a_build_gets_worse(
@@ -94,7 +94,8 @@ def test_an_index_of_another_command_stays(report: Run, builds: tuple[Path, Path
     index = Path("build/index.html")
     index.write_text("of the demo")
     assert (
-        "there is a page that `wnn2hdl report` did not make: build/index.html" in report(*builds).complaint()
+        "a page that `wnn2hdl report` did not write is in the way: build/index.html"
+        in report(*builds).complaint()
     )
     assert index.read_text() == "of the demo"
     assert not Path("build/a/report.html").exists()
@@ -114,7 +115,7 @@ def test_a_build_that_was_changed_after_its_proof_fails(
     assert f"✗ a, files: {name} was changed" in out
     status, _, err = report(builds[0], "--write-baseline", "b.json")
     assert (status, Path("b.json").exists()) == (1, False)
-    assert f"a build that was changed makes no baseline: a ({name} was changed)" in err
+    assert f"a build that was changed cannot be a baseline: a ({name} was changed)" in err
 
 
 def test_luts_may_rise_as_far_as_allowed(
@@ -146,7 +147,7 @@ def test_a_failed_build_fails_the_gate_and_is_not_recorded(
     assert report(folder, "--max-luts", 10**6)[0] == 1
     status, _, err = report(folder, "--write-baseline", "baseline.json")
     assert status == 1
-    assert "a build that is not proved makes no baseline: a" in err
+    assert "a build that is not proved cannot be a baseline: a" in err
     assert not Path("baseline.json").exists()
 
 
@@ -161,10 +162,10 @@ def test_formats_go_to_stdout_or_a_file(report: Run, builds: tuple[Path, Path], 
     }
     readers[form](out)
     assert not Path("build/index.html").exists()
-    status, told, _ = report(*builds, "--format", form, "--max-luts", 1, "-o", "out/gate.txt")
+    status, printed, _ = report(*builds, "--format", form, "--max-luts", 1, "-o", "out/gate.txt")
     assert status == 1
     readers[form](Path("out/gate.txt").read_text().replace("✗ failed", "✓ passed"))
-    assert "✗ a, max-luts" in told
+    assert "✗ a, max-luts" in printed
 
 
 def test_json_is_one_object_on_stdout_in_every_case(report: Run, builds: tuple[Path, Path]) -> None:
@@ -182,13 +183,13 @@ def test_json_is_one_object_on_stdout_in_every_case(report: Run, builds: tuple[P
     ("words", "complaint"),
     [
         (("nowhere",), "Path 'nowhere' does not exist"),
-        ((".",), "no build among these"),
+        ((".",), "none of these is a build"),
         (("build/a", "--baseline", "none.json"), "cannot read a baseline: none.json"),
         (("build/a", "--baseline", "build/a/report.json"), "not a baseline, or one of another version"),
         (("build/a", "--max-regress", "1"), "--max-regress is measured from a baseline"),
         (("build/a", "--min-accuracy", "91"), "91.0 is not in the range 0<=x<=1"),
-        (("build/a", "--min-accuracy", "nan"), "nan is no finite number"),
-        (("build/a", "--json", "--format", "junit"), "two outputs on stdout"),
+        (("build/a", "--min-accuracy", "nan"), "nan is not a finite number"),
+        (("build/a", "--json", "--format", "junit"), "two outputs cannot both go to stdout"),
         (("build/a", "--write-baseline", "b.json", "--max-luts", "1"), "--write-baseline takes builds as"),
         (("build/a", "--compare", "build/a", "build/b"), "not among the BUILDs: build/b"),
         (("build/a", "build/../build/a"), "a build is given twice: "),

@@ -17,7 +17,7 @@ Run = Callable[..., Any]
 
 def test_a_model_of_all_kinds_of_ground_from_the_written_files(run: Run, tmp_path: Path) -> None:
     folder = tmp_path / "samples"
-    done = run("samples", "--images", 6, "--side", 96, "--json", "-o", folder)
+    done = run("samples", "--count", 6, "--side", 96, "--json", "-o", folder)
     assert json.loads(done.stdout)["images"] == 6
     given = ("--images", folder / "images", "--masks", folder / "kinds", "--palette", folder / "palette.json")
     done = run("train", *given, "--json", "-o", tmp_path / "kinds.json")
@@ -26,7 +26,7 @@ def test_a_model_of_all_kinds_of_ground_from_the_written_files(run: Run, tmp_pat
 
 def test_a_flight_is_written_as_it_is_read(run: Run, tmp_path: Path) -> None:
     folder = tmp_path / "country"
-    done = run("samples", "--flight", "--side", 700, "--images", 2, "--json", "-o", folder)
+    done = run("samples", "--flight", "--side", 700, "--count", 2, "--json", "-o", folder)
     assert json.loads(done.stdout) == {
         "folder": str(folder),
         "images": 2,

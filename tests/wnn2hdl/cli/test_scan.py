@@ -80,7 +80,7 @@ def test_the_share_left_out_is_shown(
     alpha[:30] = 0
     Image.fromarray(np.dstack([pixels, alpha])).save(tmp_path / "a.png")
     done = scan(model, tmp_path / "a.png", "-o", tmp_path / "out")
-    assert "25.00% of the pixels left out: no data, or masked" in done.stdout
+    assert "25.00% of the pixels left out: no data, or excluded" in done.stdout
 
 
 def test_a_sentinel_product_needs_bands_and_a_scale(scan: Run, model: Path, tmp_path: Path) -> None:
@@ -90,8 +90,8 @@ def test_a_sentinel_product_needs_bands_and_a_scale(scan: Run, model: Path, tmp_
     with rasterio.open(tmp_path / "s2.tif", "w", driver="GTiff", **size, **place) as target:
         target.write(bands)
     start = (model, tmp_path / "s2.tif", "-o", tmp_path / "out")
-    assert "say --bands" in scan(*start).complaint()
-    assert "say --scale" in scan(*start, "--bands", "3,2,1").complaint()
+    assert "give --bands" in scan(*start).complaint()
+    assert "give --scale" in scan(*start, "--bands", "3,2,1").complaint()
     done = scan(*start, "--bands", "3,2,1", "--scale", "0:3000", "--json")
     scaled = np.clip(np.rint(bands[2] * (255 / 3000)), 0, 255)
     assert json.loads(done.stdout)["deforested"]["pixels"] == (scaled >= 96).sum()
@@ -101,11 +101,11 @@ def test_bad_usage_is_one_line(scan: Run, model: Path, picture: Path, tmp_path: 
     start = (model, picture, "-o", tmp_path / "out")
     assert "'3,2' is neither three band numbers" in scan(*start, "--bands", "3,2").complaint()
     assert "'9:1' does not rise" in scan(*start, "--scale", "9:1").complaint()
-    assert "nan is no finite number" in scan(*start, "--share", "nan").complaint()
-    assert "inf is no finite number" in scan(*start, "--minimum-area", "inf").complaint()
+    assert "nan is not a finite number" in scan(*start, "--share", "nan").complaint()
+    assert "inf is not a finite number" in scan(*start, "--min-area", "inf").complaint()
     assert "is not in the range" in scan(*start, "--square", 1_000_000).complaint()
-    assert "'low' is no pair" in scan(*start, "--scale", "low").complaint()
-    assert "say the same" in scan(*start, "--minimum-area", 1, "--minimum-pixels", 9).complaint()
+    assert "'low' is not a pair" in scan(*start, "--scale", "low").complaint()
+    assert "limit the same regions" in scan(*start, "--min-area", 1, "--min-pixels", 9).complaint()
     assert "--jobs is for this machine" in scan(*start, "--jobs", 1, "--scheduler", "tcp://a:1").complaint()
     assert "does not exist" in scan(model, tmp_path / "none.tif", "-o", tmp_path / "out").complaint()
     assert "not a model" in scan(picture, picture, "-o", tmp_path / "out").complaint()

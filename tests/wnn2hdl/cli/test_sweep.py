@@ -14,7 +14,7 @@ from wnn2hdl.lower.table import pixel_table
 
 Run = Callable[..., Any]
 
-GRID = ("--n", "3..4", "--k", "5..6", "--trials", "2")
+GRID = ("--address-bits", "3..4", "--rams", "5..6", "--trials", "2")
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def sets() -> PixelSets:
 
 @pytest.fixture(autouse=True)
 def small(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sets: PixelSets) -> None:
-    """Few small landscapes, few finalist trials, one process, and a folder of its own."""
+    """Few small landscapes, few finalist trials, one process, and its own folder."""
 
     def quick(*arguments: Any, **options: Any) -> Any:
         return real_sweep(*arguments, finalist_trials=3, **options)
@@ -74,13 +74,13 @@ def test_any_trial_is_rebuilt_without_a_sweep(run: Run) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (("--best",), "there is no place for the model; name its file with -o MODEL.json"),
+        (("--best",), "the model has no file to go to; name its file with -o MODEL.json"),
         (("--best", "--trial", "n4-k16-t7", "-o", "m"), "--best and --trial name different models"),
         (("--results", "out"), "--results goes with --best or --trial"),
         (("--trial", "n4", "-o", "m.json"), "no such trial: 'n4'"),
-        (("--trial", "s3", "-o", "m.json"), "no such trial: 's3'; run the sweep with --search first"),
-        (("--n", "12..2"), "'12..2' is no range of numbers from 1 on, as in 2..12"),
-        (("--k", "0"), "'0' is no range of numbers"),
+        (("--trial", "s3", "-o", "m.json"), "no such trial: 's3'; run the sweep with --beyond-grid first"),
+        (("--address-bits", "12..2"), "'12..2' is not a range of whole numbers from 1, as in 2..12"),
+        (("--rams", "0"), "'0' is not a range of whole numbers"),
     ],
 )
 def test_bad_options_are_one_line_and_status_2(run: Run, arguments: tuple[str, ...], complaint: str) -> None:

@@ -77,9 +77,9 @@ def test_columns_may_stand_in_any_order_with_blanks_and_a_byte_order_mark(chips:
         ("b.png,forest,0,0,20,20", r"row 3 of .*regions\.csv: no such chip in .*: 'b\.png'"),
         ("../a.png,forest,0,0,20,20", r"row 3 .*: no such chip"),
         ("a.png,Forest,0,0,20,20", r"row 3 .*: unknown label: 'Forest'; use forest or deforested"),
-        ("a.png,forest,1.5,0,20,20", r"row 3 .*: x is no whole number of pixels: '1\.5'"),
-        ("a.png,forest,0,-1,20,20", r"row 3 .*: y is no whole number of pixels: '-1'"),
-        ("a.png,forest,0,0,20", r"row 3 .*: height is no whole number of pixels: ''"),
+        ("a.png,forest,1.5,0,20,20", r"row 3 .*: x is not a whole number of pixels: '1\.5'"),
+        ("a.png,forest,0,-1,20,20", r"row 3 .*: y is not a whole number of pixels: '-1'"),
+        ("a.png,forest,0,0,20", r"row 3 .*: height is not a whole number of pixels: ''"),
         ("a.png,forest,0,0,20,20,7", r"row 3 .* too many cells"),
         ("a.png,forest,0,0,0,20", r"row 3 .*: the rectangle is empty: 0x20"),
         ("a.png,forest,81,0,20,20", r"row 3 .*: .*outside the picture of 100x60 pixels: x 81, y 0, 20x20"),
@@ -99,8 +99,8 @@ def test_a_wrong_row_is_numbered_and_explained(chips: Path, row: str, message: s
         (b"", r"has other columns"),
         (b"chip;label;x;y;width;height\n", r"its first line should be chip,label,x,y,width,height"),
         (HEADER.encode(), r"has no rows"),
-        (b"\xff\xfe\x00", r"is no CSV text"),
-        (HEADER.encode() + b'a.png,"forest,0,0,20,20\n', r"is no CSV text"),
+        (b"\xff\xfe\x00", r"is not CSV text"),
+        (HEADER.encode() + b'a.png,"forest,0,0,20,20\n', r"is not CSV text"),
     ],
 )
 def test_a_file_that_is_no_list_of_regions_is_refused(chips: Path, content: bytes, message: str) -> None:

@@ -59,7 +59,7 @@ def test_a_number_of_patterns_can_be_prescribed(pictures: Pictures, budget: int)
 def test_one_lut_holds_multiples_of_eight_only(pictures: Pictures) -> None:
     assert learned_under_budget(pictures, 1, 80).size == 80
     with pytest.raises(
-        InputError, match=r"no edge filter of 1 LUTs was found that holds so many patterns: 75"
+        InputError, match=r"no edge filter of 1 LUTs with this number of patterns was found: 75"
     ):
         learned_under_budget(pictures, 1, 75)
 

@@ -77,7 +77,7 @@ def test_a_saved_filter_can_be_read(tmp_path: Path) -> None:
 def test_a_wrong_pattern_is_counted_and_shown(tmp_path: Path, entry: object, shown: str) -> None:
     path = tmp_path / "mine.json"
     path.write_text(json.dumps([56, entry]))
-    with pytest.raises(InputError, match=r"pattern 2 of .*mine\.json is no 3x3 pattern") as caught:
+    with pytest.raises(InputError, match=r"pattern 2 of .*mine\.json is not a 3x3 pattern") as caught:
         from_file(path)
     assert shown in str(caught.value)
 

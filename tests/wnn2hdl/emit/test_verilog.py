@@ -75,7 +75,7 @@ def node(*nodes: Match | ArgMax | Threshold | Sum, name: str = "arithmetic") -> 
 
 
 def pipeline() -> Circuit:
-    """Two stages around an instance that has a register of its own; two ports carry the same bits."""
+    """Two stages around an instance that has its own register; two ports carry the same bits."""
     stage = Circuit(
         "stage",
         "A registered sum.",

@@ -36,7 +36,7 @@ def test_raw_features_are_scaled_as_the_model_notes() -> None:
 
 def test_whether_features_are_scaled_is_never_guessed() -> None:
     with pytest.raises(
-        InputError, match=r"does not say whether its are; give --scaled if they are, --raw if"
+        InputError, match=r"it is not said whether the table's are; give --scaled if they are, --raw if"
     ):
         row_confusion(noted, table((1.0, "low")), raw=None)
     with pytest.raises(InputError, match="notes no scaling: --raw"):

@@ -21,7 +21,7 @@ def silent(step: str, done: int, total: int) -> None:
 
 
 def chips(folder: Path, shares: dict[str, float], tags: dict[str, str]) -> tuple[Path, Path]:
-    """Chips of ten pixels, so many of them red, and the file of their tags."""
+    """Chips of ten pixels, some of them red, and the file of their tags."""
     (folder / "chips").mkdir()
     for name, share in shares.items():
         pixels = np.zeros((1, 10, 3), dtype=np.uint8)
@@ -100,7 +100,7 @@ def test_without_both_kinds_there_is_no_area(tmp_path: Path) -> None:
         ("name,tags\n", "other columns"),
         ("image_name,tags\n", "no rows"),
         ("image_name,tags\na,clear\na,haze\n", "repeats a picture: a"),
-        ('image_name,tags\na,"clear\n', "no CSV text"),
+        ('image_name,tags\na,"clear\n', "not CSV text"),
         ("image_name,tags\na,clear,road\n", "row 2 of .* more than two columns: a,clear,road"),
     ],
 )

@@ -42,5 +42,5 @@ def test_values_that_are_no_whole_numbers_are_refused_where_they_are_valid() -> 
     values = np.array([[0.0, 1.0, np.nan, 0.5]], dtype=np.float32)
     valid = np.array([[True, True, False, False]])
     assert value_codes(values, valid, Path("m.tif")).tolist() == [[0, 1, 0, 0]]
-    with pytest.raises(InputError, match=r"1 values of the mask stand for no class: m\.tif \(0\.5\)"):
+    with pytest.raises(InputError, match=r"1 values of the mask do not stand for a class: m\.tif \(0\.5\)"):
         value_codes(values, np.isfinite(values), Path("m.tif"))

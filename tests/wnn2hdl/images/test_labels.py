@@ -1,4 +1,4 @@
-"""Masks say of which class a pixel is, or that nobody knows, in every way that people write them."""
+"""Masks say of which class a pixel is, or that it is unlabelled, in every way that people write them."""
 
 import warnings
 from collections.abc import Callable
@@ -49,7 +49,7 @@ def with_mask(path: Path) -> Path:
 
 
 def or_else(value: int, kind: Any = np.uint8) -> NDArray[Any]:
-    """0 and 1, another value where nobody labelled: ``[1, 20, 30]``."""
+    """0 and 1, another value for unlabelled pixels: ``[1, 20, 30]``."""
     return np.where(SEEN, CLASSES.astype(int), value).astype(kind)[np.newaxis]
 
 
@@ -144,7 +144,7 @@ def test_a_palette_mask_must_not_have_two_readings(tmp_path: Path) -> None:
         picture = Image.fromarray(CLASSES).convert("P")
         picture.putpalette([255, 255, 255, 0, 0, 0])
         picture.save(tmp_path / name)
-        with pytest.raises(InputError, match="palette does not give black"):
+        with pytest.raises(InputError, match="palette must have black at index 0"):
             read(tmp_path / name)
 
 
@@ -165,7 +165,7 @@ def test_a_picture_that_is_turned_and_its_mask_that_is_not_are_noticed(tmp_path:
     exif[0x0112] = 3
     Image.new("RGB", (30, 20)).save(tmp_path / "picture.jpg", exif=exif)
     mask = saved(tmp_path / "m.png", WHITE)
-    with pytest.raises(InputError, match=r"turned in different ways: .*\(orientation 1\), .*\(3\)"):
+    with pytest.raises(InputError, match=r"have different orientations: .*\(orientation 1\), .*\(3\)"):
         read_labels(mask, tmp_path / "picture.jpg", (20, 30), MaskFormat())
     Image.fromarray(WHITE).save(mask, exif=exif)
     found = read_labels(mask, tmp_path / "picture.jpg", (20, 30), MaskFormat())

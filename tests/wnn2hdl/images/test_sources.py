@@ -49,7 +49,7 @@ def test_jpegs_are_decoded_as_in_training(
     Image.fromarray(pixels).convert(mode).save(tmp_path / "a.jpg", **options)
     assert np.array_equal(read(tmp_path / "a.jpg")[0], read_rgb(tmp_path / "a.jpg"))
     Image.fromarray((pixels[..., 0] > 90).astype(np.uint8)).save(tmp_path / "clouds.png")
-    picture, valid = read(tmp_path / "a.jpg", Reading(mask=tmp_path / "clouds.png"))
+    picture, valid = read(tmp_path / "a.jpg", Reading(exclude=tmp_path / "clouds.png"))
     assert np.array_equal(picture, read_rgb(tmp_path / "a.jpg"))
     assert valid is not None
     assert np.array_equal(valid, pixels[..., 0] <= 90)
@@ -63,7 +63,7 @@ def test_a_mask_for_a_picture_that_is_turned_has_two_readings(
     Image.fromarray(pixels).save(tmp_path / "a.jpg", exif=exif)
     Image.fromarray(pixels[..., 0]).save(tmp_path / "clouds.png")
     with pytest.raises(InputError, match="orientation 3"):
-        open_picture(tmp_path / "a.jpg", Reading(mask=tmp_path / "clouds.png"))
+        open_picture(tmp_path / "a.jpg", Reading(exclude=tmp_path / "clouds.png"))
 
 
 def test_a_world_file_locates_a_picture_that_is_not_turned(pixels: NDArray[np.uint8], tmp_path: Path) -> None:

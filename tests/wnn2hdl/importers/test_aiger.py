@@ -114,13 +114,13 @@ def test_the_symbol_table_names_inputs_and_outputs(tmp_path: Path) -> None:
     [
         ("aag 1 0 1 0 0\n2 3\n", r"only combinational ones can be imported: .*1 latches"),
         ("aig 1 1 0 1 0 1\n2\n2\n", r"only combinational ones .*0 latches, 1 properties"),
-        ("aag 1 1\n", "the first line is no header"),
+        ("aag 1 1\n", "the first line is not a header"),
         ("aag 1 0 0 1 0\n0\n", "0 inputs and 1 outputs"),
         ("aag 999999999 1 0 1 0\n2\n2\n", "999999999 variables"),
         ("aig 999999 1 0 1 999998\n2\n", "999999 variables"),
         ("aag 2 2 0 1 0\n2\n2\n2\n", "defined twice"),
-        ("aag 1 1 0 1 0\n3\n2\n", "a literal that is no variable"),
-        ("aag 1 1 0 1 0\n2\n4\n", "literal 4 is of a variable that there is not"),
+        ("aag 1 1 0 1 0\n3\n2\n", "a literal that is not a variable"),
+        ("aag 1 1 0 1 0\n2\n4\n", "literal 4 is of a variable that does not exist"),
         ("aag 3 1 0 1 1\n2\n4\n4 6 2\n", "nothing defines"),
         ("aag 3 1 0 1 2\n2\n4\n4 6 2\n6 4 2\n", "in a circle"),
         ("aag 1 1 0 1 0\n2\nx\n", "do not hold 1 numbers"),
@@ -130,7 +130,7 @@ def test_the_symbol_table_names_inputs_and_outputs(tmp_path: Path) -> None:
         ("aig 2 1 0 1 1\n2\n\x02\x7f", "a gate reads itself"),
         ("aig 3 1 0 1 1\n2\n\x02\x00", "3 variables for 1 inputs and 1 gates"),
         (HALF_ADDER.replace("o1 c", "o2 c"), "'o2 c' names nothing"),
-        (HALF_ADDER.replace("i1 y", "i1 x"), "a name of its own"),
+        (HALF_ADDER.replace("i1 y", "i1 x"), "its own name"),
     ],
 )
 def test_a_file_that_contradicts_itself_gets_one_line(tmp_path: Path, content: str, reason: str) -> None:

@@ -35,5 +35,5 @@ def test_arrays_of_other_things_are_refused(value: Any) -> None:
 
 @pytest.mark.parametrize("value", [3, None, [1, 2]])
 def test_other_values_are_no_arrays(value: Any) -> None:
-    with pytest.raises(UnreadablePickleError, match="mapping is no array"):
+    with pytest.raises(UnreadablePickleError, match="mapping is not an array"):
         array_of(value, "mapping")

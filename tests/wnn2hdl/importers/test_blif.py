@@ -89,13 +89,13 @@ HEAD = ".model m\n.inputs a b\n.outputs y\n"
         ("", "nothing defines y"),
         (".names a z y\n11 1\n.names y z\n1 1\n", "in a circle"),
         (".names a y\n1 1\n0 0\n", "both where it is 1 and where it is 0"),
-        (".names a y\n11 1\n", "no line of a cover of 1 inputs"),
-        (".names a y\nx 1\n", "no line of a cover"),
-        (".names a y\n1 1 1\n", "no line of a cover"),
+        (".names a y\n11 1\n", "not a line of a cover of 1 inputs"),
+        (".names a y\nx 1\n", "not a line of a cover"),
+        (".names a y\n1 1 1\n", "not a line of a cover"),
         (".names\n", "has no name"),
         ("11 1\n", "neither a directive nor a line of a cover"),
         (".frobnicate\n", "there is no directive .frobnicate"),
-        (".names a y \\", "continued by none"),
+        (".names a y \\", "continued by nothing"),
     ],
 )
 def test_a_file_that_contradicts_itself_gets_one_line(tmp_path: Path, body: str, reason: str) -> None:

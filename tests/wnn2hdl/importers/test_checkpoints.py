@@ -74,7 +74,7 @@ def tensor(offset: bytes, shape: bytes, strides: bytes, numbers: int = 4) -> byt
         (tensor(b"K\4", b"K\1\x85", b"K\1\x85"), "beyond its storage"),
         (tensor(b"K\0", b"K\xff\x85", b"K\0\x85"), "repeats its storage"),
         (tensor(b"K\0", b"J\xff\xff\xff\xff\x85", b"K\1\x85"), "a tensor is damaged"),
-        (tensor(b"K\0", b"K\2\x85", b")"), "no view of a storage"),
+        (tensor(b"K\0", b"K\2\x85", b")"), "not a view of a storage"),
         (tensor(b"K\0", b"K\4\x85", b"K\1\x85", numbers=5), "holds 4 numbers, not 5"),
     ],
 )

@@ -167,7 +167,7 @@ NAN = np.full((3, 4), np.nan, dtype=np.float32)
         (changed("0.luts", NAN), "0.luts holds numbers that are not finite"),
         (changed("0.luts", LUTS[0][:, :3]), "power of two"),
         (changed("0.luts", LUTS[0][:2]), "there are 4 slots"),
-        (changed("0.luts", [1, 2]), "0.luts is no array"),
+        (changed("0.luts", [1, 2]), "0.luts is not an array"),
         (changed("0.mapping.weights", WEIGHTS[:, :5]), "there are 6 slots"),
         (changed("0.mapping.weights", WEIGHTS[:3]), "the thermometer has 4 bits; the network reads 3"),
         (changed("1.mapping", SECOND + 1), "reads inputs 1 to 3; there are 3"),

@@ -85,7 +85,7 @@ def test_a_named_format_is_not_guessed(tmp_path: Path) -> None:
     path = tmp_path / "not.blif"
     path.write_text(NOT)
     with pytest.raises(
-        InputError, match=r"not an AIGER file, or a damaged one: .*the first line is no header"
+        InputError, match=r"not an AIGER file, or a damaged one: .*the first line is not a header"
     ):
         import_model(path, ImportOptions(), "aiger")
 
@@ -93,8 +93,8 @@ def test_a_named_format_is_not_guessed(tmp_path: Path) -> None:
 def test_an_option_of_another_format_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "not.blif"
     path.write_text(NOT)
-    with pytest.raises(InputError, match="an option says nothing about a network in BLIF: --bleaching"):
-        import_model(path, ImportOptions(bleaching=2))
+    with pytest.raises(InputError, match="an option does not apply to a network in BLIF: --bleach"):
+        import_model(path, ImportOptions(bleach=2))
 
 
 def test_another_packages_importer_is_known_and_ambiguity_refused(

@@ -85,7 +85,11 @@ def test_the_config_is_asked_for_where_there_is_none(write: Write, tmp_path: Pat
         (tables(), {**CONFIG, "layers_bitwidth": [3, 3, 4]}, "does not hold 8 whole numbers"),
         (tables(), {**CONFIG, "layers": [10**9, 1, 2]}, "4 edges; config.json asks for"),
         (tables(**{"0_0_0": edge(1, 2)}), CONFIG, "edge 0_0_0 does not hold 4 whole numbers"),
-        (tables(**{"0_0_0": {"acive": 1, "values_int": [1, 2, 3, 4.5]}}), CONFIG, "no list of whole numbers"),
+        (
+            tables(**{"0_0_0": {"acive": 1, "values_int": [1, 2, 3, 4.5]}}),
+            CONFIG,
+            "not a list of whole numbers",
+        ),
         (tables(**{"0_0_0": edge(1, 2, 3, 2**31)}), CONFIG, "beyond 32 bits"),
         (tables(**{"0_0_0": edge(1, 2, 3, 4, active=2)}), CONFIG, "active or not, 1 or 0, not 2"),
         (tables(**{"0_0_0": [1]}), CONFIG, "or a damaged one"),

@@ -68,9 +68,9 @@ def test_the_first_mapped_bit_is_the_lowest_and_the_last_label_wins(write: Write
 def test_bleaching_stays_dynamic_unless_it_is_asked_for(write: Write) -> None:
     source = Source(write(model(bleachingActivated=True, confidence=2)))
     assert read(source, ImportOptions()).bleaching == Dynamic(2)
-    fixed = read(source, ImportOptions(bleaching=4))
+    fixed = read(source, ImportOptions(bleach=4))
     assert fixed.bleaching == 4
-    assert fixed.origin["bleaching"] == "fixed at 4 by request: another classifier than the file's"
+    assert fixed.origin["bleaching"] == "fixed at 4 by request: not the classifier of the file"
 
 
 def test_ignoring_zero_is_storing_nothing_there(write: Write) -> None:
@@ -110,12 +110,12 @@ def broken(**changes: Any) -> dict[str, Any]:
     ("data", "reason"),
     [
         (model(base=3), r"reads digits, not bits: .*base 3"),
-        (model(classes={}), "is no list of whole numbers"),
+        (model(classes={}), "is not a list of whole numbers"),
         (broken(entrySize=4), "classes read inputs of 3 to 4 bits"),
-        (broken(entrySize=3.0), "entrySize is no list of whole numbers"),
+        (broken(entrySize=3.0), "entrySize is not a list of whole numbers"),
         (broken(mapping=[[0, 3], [1, 1]]), "reads inputs 0 to 3; there are 3"),
         (broken(mapping=[[0, -1], [1, 1]]), "reads input -1"),
-        (broken(mapping=[[0, 1.5], [1, 1]]), "no list of whole numbers"),
+        (broken(mapping=[[0, 1.5], [1, 1]]), "not a list of whole numbers"),
         (broken(mapping=[[0] * 65, [1]]), "65 address bits"),
         (broken(mapping=[[0, 1]]), "data of 2 RAMs"),
         (broken(data=data_of({4: 1}, {})), "address 4 does not fit 2 bits"),

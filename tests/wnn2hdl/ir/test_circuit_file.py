@@ -125,9 +125,9 @@ def definition(name: str, **changes: Any) -> dict[str, Any]:
     [
         ([], "not a circuit"),
         ([definition("c", inputs={"a": 0})], "port a has 0 bits"),
-        ([definition("c", inputs={"a b": 1})], "'a b' is no name"),
+        ([definition("c", inputs={"a b": 1})], "'a b' is not a name"),
         ([definition("c", nodes=[{"kind": "memory", "name": "m"}])], "memory"),
-        ([definition("c", nodes=[{"kind": "sum", "name": 3, "word": ["a[0:0]"]}])], "3 is no name"),
+        ([definition("c", nodes=[{"kind": "sum", "name": 3, "word": ["a[0:0]"]}])], "3 is not a name"),
         ([definition("c", nodes=[{"kind": "instance", "name": "i", "circuit": "x", "inputs": {}}])], "x"),
         ([definition("c"), definition("c")], "two circuits are called c"),
     ],

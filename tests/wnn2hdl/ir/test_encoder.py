@@ -110,7 +110,7 @@ def test_json_gives_the_encoder_back(encoder: Encoder) -> None:
 
 @pytest.mark.parametrize(
     ("bits", "message"),
-    [(("X9",), "'X9' is no pixel bit"), ((), "no bits were chosen"), (("R1", "R1"), "named twice")],
+    [(("X9",), "'X9' is not a pixel bit"), ((), "no bits were chosen"), (("R1", "R1"), "named twice")],
 )
 def test_bits_that_cannot_be_selected(bits: tuple[str, ...], message: str) -> None:
     with pytest.raises(ValueError, match=message):

@@ -110,8 +110,8 @@ def test_the_digest_sees_what_decides_answers_and_nothing_else() -> None:
     model = hand_worked()
     counts = model.counts.copy()
     counts[1, 1, 3] += 1
-    told = replace(model, training={"seed": 8}, colours=np.array([7]))
-    assert model.digest() == told.digest()
+    noted = replace(model, training={"seed": 8}, colours=np.array([7]))
+    assert model.digest() == noted.digest()
     others = [
         replace(model, counts=counts),
         replace(model, bleaching=3),
@@ -182,7 +182,10 @@ def broken(**changes: object) -> dict[str, Any]:
             broken(encoder={"kind": "thermometer", "thresholds": [[2, 1]], "strict": False}),
             "contradicts itself: .*do not rise",
         ),
-        (broken(encoder={"kind": "thermometer", "thresholds": [[float("nan")]]}), "NaN is no finite number"),
+        (
+            broken(encoder={"kind": "thermometer", "thresholds": [[float("nan")]]}),
+            "NaN is not a finite number",
+        ),
     ],
 )
 def test_a_file_that_is_no_sound_model_gets_one_line(tmp_path: Path, data: dict[str, Any], line: str) -> None:

@@ -37,7 +37,7 @@ def test_letters_digits_and_underscores_are_a_name(name: str) -> None:
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_anything_else_is_none(name: object) -> None:
-    with pytest.raises(ValueError, match="is no name") as caught:
+    with pytest.raises(ValueError, match="is not a name") as caught:
         check_identifier(name)
     assert len(str(caught.value)) < 200
 
@@ -53,7 +53,7 @@ def test_no_name_is_a_reserved_word_of_any_language(name: str) -> None:
     ["a\nb", "a\rb", "a\fb", "a\vb", "a\x85b", "a\u2028b", "a\\", "a\0", "\ufeffa", 7],
 )
 def test_a_comment_ends_with_its_line_whatever_tool_reads_it(line: object) -> None:
-    with pytest.raises(ValueError, match="is no line of a comment"):
+    with pytest.raises(ValueError, match="is not a line of a comment"):
         check_comment(line)
 
 
@@ -71,23 +71,23 @@ def test_other_comments_may_name_tools() -> None:
 
 @pytest.mark.parametrize("name", ["a b", "wire"])
 def test_circuits_and_networks_have_no_other_names(name: str) -> None:
-    with pytest.raises(ValueError, match=r"no name|reserved"):
+    with pytest.raises(ValueError, match=r"not a name|reserved"):
         Port(name, 1)
     port, word = Port("a", 2), (Slice("a", 0, 2),)
-    with pytest.raises(ValueError, match=r"no name|reserved"):
+    with pytest.raises(ValueError, match=r"not a name|reserved"):
         Circuit("c", "Counts.", (port,), (Sum(name, word),), {"y": (Slice(name, 0, 2),)})
-    with pytest.raises(ValueError, match=r"no name|reserved"):
+    with pytest.raises(ValueError, match=r"not a name|reserved"):
         Circuit("c", "Counts.", (port,), (), {name: word})
     for network in (((name,), "x", "y"), (("a",), name, "y"), (("a",), "x", name)):
         inputs, cell, output = network
-        with pytest.raises(ValueError, match=r"no name|reserved"):
+        with pytest.raises(ValueError, match=r"not a name|reserved"):
             LutNetwork(inputs, (Lut(cell, inputs, 1),), ((output, cell),))
 
 
 def test_a_circuit_may_be_called_like_a_reserved_word_since_its_module_has_a_prefix() -> None:
     port = Port("a", 1)
     assert Circuit("edge", "An edge.", (port,), (), {"y": port.word}).name == "edge"
-    with pytest.raises(ValueError, match="is no name"):
+    with pytest.raises(ValueError, match="is not a name"):
         Circuit("edge;", "An edge.", (port,), (), {"y": port.word})
-    with pytest.raises(ValueError, match="is no line of a comment"):
+    with pytest.raises(ValueError, match="is not a line of a comment"):
         Circuit("edge", "An edge.\nmodule x; endmodule", (port,), (), {"y": port.word})

@@ -52,5 +52,5 @@ def test_a_port_has_bits() -> None:
     "name", ["edge", "Signal", "int", "a b", "a-b", "1st", "a__b", "a_", "_a", "clk", "", "é"]
 )
 def test_a_port_has_a_name_that_every_hdl_can_have(name: str) -> None:
-    with pytest.raises(ValueError, match=r"is no name|reserved word|called clk"):
+    with pytest.raises(ValueError, match=r"is not a name|reserved word|called clk"):
         Port(name, 1)

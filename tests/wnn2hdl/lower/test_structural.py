@@ -61,7 +61,7 @@ def test_thresholds_beyond_all_words_are_constant_and_equal_ones_are_one_bit() -
 
 
 def test_a_threshold_found_anew_for_each_sample_is_no_circuit() -> None:
-    with pytest.raises(InputError, match=r"threshold is found anew for each sample.*--bleaching"):
+    with pytest.raises(InputError, match=r"threshold is found again for each sample.*--bleach"):
         core(replace(wisard(0), bleaching=Dynamic()))
 
 

@@ -50,7 +50,7 @@ def test_a_busy_machine_gives_the_same_networks_and_candidates(request: pytest.F
 
 
 def test_what_decides_a_network_is_told_with_its_version() -> None:
-    told = generators()
-    assert told["numpy"] == np.__version__
-    assert told["pyeda"] == version("pyeda")
-    assert told["ABC"].startswith(f"of {find_yosys().name} ")
+    found = generators()
+    assert found["numpy"] == np.__version__
+    assert found["pyeda"] == version("pyeda")
+    assert found["ABC"].startswith(f"of {find_yosys().name} ")

@@ -128,9 +128,9 @@ def test_the_same_table_gives_the_same_network() -> None:
 
 
 def test_progress_tells_each_improvement() -> None:
-    told: list[tuple[str, int]] = []
-    mapping = map_luts(random_table(8, 1, 0.5, 0), effort=1, progress=lambda *x: told.append(x))
-    assert told[-1] == (mapping.method, len(mapping.network.luts))
+    reported: list[tuple[str, int]] = []
+    mapping = map_luts(random_table(8, 1, 0.5, 0), effort=1, progress=lambda *x: reported.append(x))
+    assert reported[-1] == (mapping.method, len(mapping.network.luts))
 
 
 def test_an_unknown_effort_is_refused() -> None:

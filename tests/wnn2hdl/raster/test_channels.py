@@ -46,7 +46,7 @@ def test_three_unnamed_bands_are_taken_in_order_and_it_is_said() -> None:
     ],
 )
 def test_what_nobody_states_is_refused(interpretations: tuple[str, ...]) -> None:
-    with pytest.raises(InputError, match=r"scene\.tif.*say --bands"):
+    with pytest.raises(InputError, match=r"scene\.tif.*give --bands"):
         choose_channels(PATH, interpretations)
 
 

@@ -16,7 +16,7 @@ rasterio = pytest.importorskip("rasterio")
 
 
 def valid(path: Path, mask: Path) -> NDArray[np.bool_]:
-    source = open_picture(path, Reading(mask=mask))
+    source = open_picture(path, Reading(exclude=mask))
     found = source.read(0, 0, source.height, source.width)[1]
     assert found is not None
     return found
@@ -33,7 +33,7 @@ def clouds(tmp_path: Path) -> NDArray[np.uint8]:
 def test_clouds_are_left_out(save: Any, scene: NDArray[np.uint8], clouds: NDArray[np.uint8]) -> None:
     path = save(scene, photometric="rgb")
     assert np.array_equal(valid(path, path.with_name("clouds.png")), clouds == 0)
-    source = open_picture(path, Reading(mask=path.with_name("clouds.png")))
+    source = open_picture(path, Reading(exclude=path.with_name("clouds.png")))
     assert np.array_equal(source.read(10, 20, 20, 30)[0], np.moveaxis(scene, 0, 2)[10:30, 20:50])
     assert {file.name for file in source.files} >= {path.name, "clouds.png"}
 

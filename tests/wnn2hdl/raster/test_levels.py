@@ -30,7 +30,7 @@ def with_units(path: Path, scale: float, *offsets: float) -> Path:
 def test_deep_samples_need_a_scale(save: Any) -> None:
     deep = np.arange(3 * 600, dtype=np.uint16).reshape(3, 20, 30) * 7
     path = save(deep, photometric="rgb")
-    with pytest.raises(InputError, match=r"uint16.*\(0 to 12593 in a sample\); say --scale"):
+    with pytest.raises(InputError, match=r"uint16.*\(0 to 12593 in a sample\); give --scale"):
         RasterReader(path, Reading())
     expected = np.clip(np.rint((np.moveaxis(deep, 0, 2).astype(float) - 100) * (255 / 2900)), 0, 255)
     assert np.array_equal(whole(path, Reading(scale=(100, 3000))), expected)
@@ -41,7 +41,7 @@ def test_a_stated_offset_is_heeded_so_that_two_dates_compare(save: Any) -> None:
     reflectance = np.arange(3 * 600, dtype=np.uint16).reshape(3, 20, 30)
     before = with_units(save(reflectance, "2021.tif", photometric="rgb"), 1e-4, 0.0)
     after = with_units(save(reflectance + 1000, "2023.tif", photometric="rgb"), 1e-4, -0.1)
-    with pytest.raises(InputError, match=r"0 to 0\.1799 in a sample; 0\.0001 times the sample \+0\); say"):
+    with pytest.raises(InputError, match=r"0 to 0\.1799 in a sample; 0\.0001 times the sample \+0\); give"):
         RasterReader(before, Reading())
     reading = Reading(scale=(0, 0.15))
     assert np.array_equal(whole(before, reading), whole(after, reading))
@@ -62,7 +62,7 @@ def test_a_scale_of_samples_does_not_fit_a_file_of_reflectances(save: Any) -> No
 
 def test_bytes_with_units_are_no_levels(save: Any, scene: NDArray[np.uint8]) -> None:
     path = with_units(save(scene, photometric="rgb"), 1 / 255, 0.0)
-    with pytest.raises(InputError, match="say --scale"):
+    with pytest.raises(InputError, match="give --scale"):
         RasterReader(path, Reading())
     assert np.array_equal(whole(path, Reading(scale=(0, 1))), np.moveaxis(scene, 0, 2))
 

@@ -72,7 +72,7 @@ def test_further_pages_are_told(tmp_path: Path) -> None:
 
 def test_chosen_bands_are_read_in_their_order(save: Any, scene: NDArray[np.uint8]) -> None:
     path = save(np.concatenate([scene, scene[:1] // 2]), photometric="minisblack", alpha="no")
-    with pytest.raises(InputError, match="say --bands"):
+    with pytest.raises(InputError, match="give --bands"):
         RasterReader(path, Reading())
     picture, _ = whole(path, Reading(bands=(3, 2, 1)))
     assert np.array_equal(picture, np.moveaxis(scene[::-1], 0, 2))

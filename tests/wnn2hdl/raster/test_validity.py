@@ -130,10 +130,10 @@ def infrared(save: Any, scene: NDArray[np.uint8]) -> Path:
 
 
 def test_alpha_that_looks_like_data_is_questioned(infrared: Path) -> None:
-    with pytest.raises(InputError, match=r"looks like data: .*neither clear nor opaque\); say --alpha data"):
+    with pytest.raises(InputError, match=r"looks like data: .*neither clear nor opaque\); give --alpha data"):
         RasterReader(infrared, Reading())
     assert left_out(infrared, Reading(alpha="data")) == []
-    assert len(left_out(infrared, Reading(alpha="mask"))) > 2700
+    assert len(left_out(infrared, Reading(alpha="exclude"))) > 2700
 
 
 def test_a_band_that_is_named_never_masks(infrared: Path) -> None:

@@ -36,7 +36,7 @@ def test_a_change_of_a_figure_is_a_change_of_a_line(report: dict[str, Any], tmp_
 
 def test_a_build_that_is_not_proved_makes_none(report: dict[str, Any], tmp_path: Path) -> None:
     report["proof"]["status"] = "failed"
-    with pytest.raises(CheckError, match="not proved makes no baseline: x"):
+    with pytest.raises(CheckError, match="not proved cannot be a baseline: x"):
         write_baseline(tmp_path / "b.json", {"x": report}, {"x": ()})
     assert not list(tmp_path.iterdir())
 

@@ -61,7 +61,7 @@ def test_a_small_change_is_not_told_as_none(report: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("difference", "told"),
+    ("difference", "reported"),
     [
         (0.0000038147, "+0.0004 points"),
         (-0.0000038147, MINUS + "0.0004 points"),
@@ -72,10 +72,10 @@ def test_a_small_change_is_not_told_as_none(report: dict[str, Any]) -> None:
     ],
 )
 def test_points_have_as_many_digits_as_a_person_reads(
-    report: dict[str, Any], difference: float, told: str
+    report: dict[str, Any], difference: float, reported: str
 ) -> None:
     other = report | {"accuracy": 0.5 + difference}
-    assert figures(report | {"accuracy": 0.5}, other)["accuracy of the circuit"].change == told
+    assert figures(report | {"accuracy": 0.5}, other)["accuracy of the circuit"].change == reported
 
 
 def test_many_tables_are_summed_up() -> None:
@@ -89,17 +89,17 @@ def test_cubes_of_many_tables_are_summed_up(report: dict[str, Any]) -> None:
     sizes = report["minimised"]["pixel"]
     first = report | {"minimised": {f"t{i}": sizes for i in range(1000)}}
     second = first | {"minimised": first["minimised"] | {"t7": sizes | {"cubes_after": 10}}}
-    told = [change for change in compare(first, second)["Figures"] if change.what.startswith("cubes")]
-    assert told == [Change("cubes of all 1,000 tables", "11,000", "10,999", MINUS + "1")]
+    reported = [change for change in compare(first, second)["Figures"] if change.what.startswith("cubes")]
+    assert reported == [Change("cubes of all 1,000 tables", "11,000", "10,999", MINUS + "1")]
 
 
 @pytest.mark.parametrize(
-    ("after", "told"), [(0.91, "+1 points"), (1.0, "+10 points"), (0.915, "+1.5 points")]
+    ("after", "reported"), [(0.91, "+1 points"), (1.0, "+10 points"), (0.915, "+1.5 points")]
 )
-def test_whole_points_have_no_decimal_point(report: dict[str, Any], after: float, told: str) -> None:
+def test_whole_points_have_no_decimal_point(report: dict[str, Any], after: float, reported: str) -> None:
     assert (
         figures(report | {"accuracy": 0.9}, report | {"accuracy": after})["accuracy of the circuit"].change
-        == told
+        == reported
     )
 
 

@@ -115,5 +115,5 @@ def test_a_report_with_nothing_to_tell_has_no_empty_tables() -> None:
 
 
 def test_nearly_all_is_not_told_as_all() -> None:
-    told = page(replace(FULL, care=Care(150, 0.999996)))
-    assert "| share of other imagery that these codes cover | 99.9996 % |" in told.splitlines()
+    reported = page(replace(FULL, care=Care(150, 0.999996)))
+    assert "| share of other imagery that these codes cover | 99.9996 % |" in reported.splitlines()

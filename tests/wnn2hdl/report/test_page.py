@@ -1,4 +1,4 @@
-"""The page of a build tells what report.json tells, and nothing else."""
+"""The page of a build says what report.json says, and nothing else."""
 
 import json
 import re
@@ -59,8 +59,8 @@ def at(report: Any, key: str) -> Any:
 
 def test_every_figure_is_the_one_at_its_path(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
     figures = Outline(build_page(report, networks)).figures
-    for key, told in figures.items():
-        assert {json.loads(value) for value, _ in told} == {at(report, key)}, key
+    for key, reported in figures.items():
+        assert {json.loads(value) for value, _ in reported} == {at(report, key)}, key
     assert {"parts.block.luts", "parts.sobel.luts", "published.0.luts", "accuracy", "care.coverage"} <= set(
         figures
     )
@@ -318,9 +318,9 @@ def test_the_commands_are_those_of_the_report(
 def test_the_command_that_trained_the_model_is_told_where_the_model_tells_it(
     report: dict[str, Any], networks: dict[str, LutNetwork]
 ) -> None:
-    notes = report["model"]["training"] | {"command": "wnn2hdl train --max-luts 2"}
+    notes = report["model"]["training"] | {"command": "wnn2hdl train --luts-per-pixel 2"}
     page = build_page(report | {"model": report["model"] | {"training": notes}}, networks)
-    assert f"<code>wnn2hdl train --max-luts 2 -o {report['name']}-again.json\n" in page
+    assert f"<code>wnn2hdl train --luts-per-pixel 2 -o {report['name']}-again.json\n" in page
     assert "That file does not tell" not in page
     assert '<th scope="row">command</th>' not in page
 

@@ -39,10 +39,10 @@ def test_a_report_of_another_version_is_refused(report: dict[str, Any]) -> None:
 
 
 def test_what_the_pages_stand_on_must_be_there(report: dict[str, Any]) -> None:
-    with pytest.raises(ModelFileError, match="the target nonsense is none of its parts"):
+    with pytest.raises(ModelFileError, match="the target nonsense is not one of its parts"):
         check_report(report | {"target": "nonsense"}, Path("r.json"))
     parts = {name: figures for name, figures in report["parts"].items() if name != "block"}
-    with pytest.raises(ModelFileError, match="the target block is none of its parts"):
+    with pytest.raises(ModelFileError, match="the target block is not one of its parts"):
         check_report(report | {"parts": parts}, Path("r.json"))
     with pytest.raises(ModelFileError, match="at model/saturation/0"):
         check_report(report | {"model": report["model"] | {"saturation": [[]]}}, Path("r.json"))

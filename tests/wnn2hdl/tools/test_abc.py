@@ -1,4 +1,4 @@
-"""The real ABC, which tells of errors on status 0."""
+"""The real ABC, which reports errors with status 0."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -13,7 +13,7 @@ import pytest
 from wnn2hdl.errors import ToolError, ToolStoppedError
 from wnn2hdl.tools import cores, in_parallel, run
 
-# A shell that starts a grandchild, tells its number and waits for it.
+# A shell that starts a grandchild, prints its number and waits for it.
 WITH_GRANDCHILD = ["sh", "-c", "sleep 60 & echo $!; wait"]
 
 

@@ -103,7 +103,7 @@ def test_none_at_all_says_how_to_install(on_path: Path) -> None:
 def test_a_choice_that_is_none(monkeypatch: pytest.MonkeyPatch, fresh: None) -> None:
     monkeypatch.setenv(CHOICE, "vivado")
     with pytest.raises(
-        InputError, match=r"^WNN2HDL_YOSYS names no Yosys: vivado; leave it out or set it to pyosys"
+        InputError, match=r"^WNN2HDL_YOSYS does not name a Yosys: vivado; leave it out or set it to pyosys"
     ):
         find_yosys()
 

@@ -32,11 +32,11 @@ def dataset() -> Dataset:
 
 @pytest.fixture(scope="module")
 def measured(dataset: Dataset) -> Measured:
-    told: list[tuple[str, int, int]] = []
+    reported: list[tuple[str, int, int]] = []
     points = measure(
-        dataset, trials=1, seed=0, progress=lambda step, done, total: told.append((step, done, total))
+        dataset, trials=1, seed=0, progress=lambda step, done, total: reported.append((step, done, total))
     )
-    return points, told
+    return points, reported
 
 
 @pytest.fixture(scope="module")
@@ -90,23 +90,23 @@ def test_the_most_accurate_that_fits_is_returned_with_its_figures(
 
 
 def test_a_budget_below_one_lut_is_refused(dataset: Dataset) -> None:
-    with pytest.raises(InputError, match="at least one LUT a pixel: 0; allow 1 or more"):
+    with pytest.raises(InputError, match="at least one LUT per pixel: 0; allow 1 or more"):
         train_under_budget(dataset, 0, trials=0, seed=0, progress=silent)
 
 
 def test_a_budget_that_nothing_fits_is_refused() -> None:
     several = from_samples(2, 32, seed=0, every_kind=True)
-    with pytest.raises(InputError, match="no classifier of at most 1 LUTs a pixel was found: 0 candidates"):
+    with pytest.raises(InputError, match="no classifier of at most 1 LUTs per pixel was found: 0 candidates"):
         train_under_budget(several, 1, trials=0, seed=0, progress=silent)
 
 
 def test_progress_tells_of_images_and_candidates(measured: Measured) -> None:
-    points, told = measured
-    assert [step for step in told if step[0] == "reading images"] == [
+    points, reported = measured
+    assert [step for step in reported if step[0] == "reading images"] == [
         ("reading images", done, 3) for done in (0, 1, 2, 3)
     ]
-    assert ("drawing mappings", 1, 1) in told
-    assert told[-1] == ("measuring candidates", len(points), len(points))
+    assert ("drawing mappings", 1, 1) in reported
+    assert reported[-1] == ("measuring candidates", len(points), len(points))
 
 
 def test_a_discriminator_that_says_yes_to_everything_saturates() -> None:

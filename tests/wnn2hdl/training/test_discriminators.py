@@ -91,14 +91,14 @@ def test_balanced_classes_weigh_alike_so_that_a_rare_one_is_found() -> None:
 
 
 def test_a_stage_is_told_of_when_it_starts_and_after_each_item() -> None:
-    told: list[tuple[str, int, int]] = []
+    seen_steps: list[tuple[str, int, int]] = []
 
     def report(step: str, done: int, total: int) -> None:
-        told.append((step, done, total))
+        seen_steps.append((step, done, total))
 
     for item in reported("ab", "reading", 2, report):
         report(item, -1, -1)
-    assert told == [
+    assert seen_steps == [
         ("reading", 0, 2),
         ("a", -1, -1),
         ("reading", 1, 2),
@@ -106,4 +106,4 @@ def test_a_stage_is_told_of_when_it_starts_and_after_each_item() -> None:
         ("reading", 2, 2),
     ]
     assert list(reported((), "reading", 0, report)) == []
-    assert len(told) == 5
+    assert len(seen_steps) == 5

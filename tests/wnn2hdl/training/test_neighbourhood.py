@@ -56,7 +56,7 @@ def neighbourhood_build(
 
 @pytest.mark.slow
 def test_a_trained_neighbourhood_classifies_other_landscapes() -> None:
-    model = train_neighbourhood(from_samples(4, 96, seed=1), 3, max_luts=13, seed=0, progress=silent)
+    model = train_neighbourhood(from_samples(4, 96, seed=1), 3, luts_per_pixel=13, seed=0, progress=silent)
     result = evaluate(model_classifier(model), from_samples(3, 96, seed=50), silent)
     assert result.accuracy > 0.85
     assert model.training["luts"] == 13
@@ -65,13 +65,13 @@ def test_a_trained_neighbourhood_classifies_other_landscapes() -> None:
 
 def test_what_no_neighbourhood_can_be_trained_on_is_refused() -> None:
     with pytest.raises(InputError, match="takes 13 LUTs: 12 allowed"):
-        train_neighbourhood(from_samples(2, 32, seed=0), 3, max_luts=12, seed=0, progress=silent)
+        train_neighbourhood(from_samples(2, 32, seed=0), 3, luts_per_pixel=12, seed=0, progress=silent)
     with pytest.raises(InputError, match="smaller than the neighbourhood: landscape-00000 of 4x4"):
-        train_neighbourhood(from_samples(1, 4, seed=0), 5, max_luts=None, seed=0, progress=silent)
+        train_neighbourhood(from_samples(1, 4, seed=0), 5, luts_per_pixel=None, seed=0, progress=silent)
     some = LabelledImage("some", np.zeros((5, 3), np.uint8), np.zeros(5, np.uint8))
     dataset = Dataset(("forest", "deforested"), ("some",), lambda _: some)
     with pytest.raises(InputError, match="only some pixels"):
-        train_neighbourhood(dataset, 3, max_luts=None, seed=0, progress=silent)
+        train_neighbourhood(dataset, 3, luts_per_pixel=None, seed=0, progress=silent)
 
 
 def test_a_classifier_of_pictures_has_a_halo(imagery: Path, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Pipelines: equal to the model so many cycles later, whatever happened before and after."""
+"""Pipelines: equal to the model their latency later, whatever happened before and after."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -116,7 +116,7 @@ def test_a_mapped_netlist_of_flip_flops_and_shift_registers_is_compared(circuits
 
 
 def registered(circuits: ModuleType, block: Any, part: str, inner: str, latency: int) -> Circuit:
-    """A circuit behind so many registers at each of its inputs."""
+    """A circuit behind this many registers at each of its inputs."""
     claim = circuits.specification(block).claims[part]
     ports = [f"input [{width - 1}:0] {port}" for port, width in claim.inputs.items()]
     ports += [f"output [{width - 1}:0] {port}" for port, width in claim.outputs.items()]

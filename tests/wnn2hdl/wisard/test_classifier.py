@@ -187,7 +187,7 @@ def test_an_untrained_classifier_answers_nothing() -> None:
 
 
 def test_a_model_needs_the_encoder_that_made_its_bits() -> None:
-    with pytest.raises(ValueError, match="the encoder makes 2 bits, trained were 4"):
+    with pytest.raises(ValueError, match="the encoder makes 2 bits; the classifier was trained on 4"):
         WisardClassifier(2, 3).fit(HAND_X, HAND_Y).model(parse_bits("R7,R6"))
 
 

@@ -29,8 +29,8 @@ def test_a_seed_gives_the_same_mapping_and_another_seed_another() -> None:
     ("bits", "rams", "address_bits", "line"),
     [
         (12, 0, 4, "at least one RAM: 0; choose 1 or more"),
-        (12, 4, 0, "so many address bits: 0; choose 1 to 20"),
-        (99, 4, 21, "so many address bits: 21; choose 1 to 20"),
+        (12, 4, 0, "this number of address bits: 0; choose 1 to 20"),
+        (99, 4, 21, "this number of address bits: 21; choose 1 to 20"),
         (12, 4, 13, "more address bits than the network has input bits: 13 of 12; choose at most 12"),
     ],
 )

@@ -13,7 +13,7 @@ WIDTH = 6
 
 @st.composite
 def cases(draw: st.DrawFn) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64]]:
-    """Patterns, a mapping (shared or one a class) and counts."""
+    """Patterns, a mapping (shared or one per class) and counts."""
     classes, rams, address_bits = draw(st.integers(2, 4)), draw(st.integers(1, 5)), draw(st.integers(1, 4))
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))
     mapping = rng.integers(0, WIDTH, (draw(st.sampled_from([1, classes])), rams, address_bits))

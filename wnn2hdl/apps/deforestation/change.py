@@ -46,8 +46,8 @@ def write_change(
 ) -> Change:
     """Map what was not cleared before and is after, and the reverse.
 
-    A change from one cleared class to another is none, nor one among the others, as when a river moves. A
-    strip of rows is in memory at a time, and what `sieve_raster` and `write_polygons` need.
+    A change from one cleared class to another does not count, nor does one among the others, as when a river
+    moves. A strip of rows is in memory at a time, and what `sieve_raster` and `write_polygons` need.
 
     Args:
         before: the class raster of the earlier date.
@@ -57,7 +57,7 @@ def write_change(
             leaves them.
         output_raster: a GeoTIFF of the indices of `CHANGES`; nodata where either has none.
         output_polygons: GeoJSON or GeoPackage of what is newly cleared and regrown, by `write_polygons`.
-        progress: told of each strip.
+        progress: called with each strip.
 
     Raises:
         ExtraMissingError: the extra ``geo`` is not installed.

@@ -43,7 +43,7 @@ def open_classes(path: Path) -> "Iterator[DatasetReader]":
 
     Raises:
         ExtraMissingError: rasterio is not installed.
-        InputError: the file cannot be read or is no class raster.
+        InputError: the file cannot be read or is not a class raster.
     """
     with gdal(path) as rasterio, open_raster(rasterio, path) as dataset:
         if dataset.count != 1 or dataset.dtypes[0] != "uint8":

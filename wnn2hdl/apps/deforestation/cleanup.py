@@ -98,7 +98,7 @@ def sieve_raster(
         source: a class raster.
         output: where to write the result, with the same georeference and colours.
         minimum: the minimum mapping unit; one in hectares needs a raster with a georeference.
-        progress: told of each strip, three times over.
+        progress: called with each strip, three times over.
         strip_pixels: how many pixels are worked on at a time; the result does not depend on it.
 
     Returns:

@@ -3,7 +3,7 @@
 Only the picture's path goes out; every worker reads its windows itself, so the picture must lie on storage
 that all of them see under that path. What comes back is compressed: of a window of 2,048 x 2,048 pixels of
 forest with clearings some 10 kB with squares of 20 and 400 kB without. At most
-`wnn2hdl.tools.cluster.AHEAD` windows a core are handed out at a time.
+`wnn2hdl.tools.cluster.AHEAD` windows per core are handed out at a time.
 """
 
 from collections.abc import Generator, Iterable

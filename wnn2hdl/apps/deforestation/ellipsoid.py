@@ -21,7 +21,7 @@ _ECCENTRICITY = (_FLATTENING * (2 - _FLATTENING)) ** 0.5
 
 _NODE_METRES = 1000.0
 _NODE_PIXELS = 128
-"""Areas are worked out at pixels at most so far apart and interpolated linearly between them.
+"""Areas are computed at pixels at most this far apart and interpolated linearly between them.
 
 Linear interpolation over 1 km errs by the area's second derivative, at most about 2 / R**2 in UTM and along
 meridians: by 1 part in 10**8.
@@ -38,7 +38,8 @@ class PixelAreas:
 
     Args:
         place: where the raster lies; it is located.
-        height: pixels; likewise ``width``.
+        height: pixels.
+        width: pixels.
 
     Attributes:
         middle: area of the pixel in the middle, m².
@@ -55,7 +56,8 @@ class PixelAreas:
         self._to_degrees = to_degrees(place.crs)
         self._width, self._height = width, height
         self.middle = float(self._corner_areas(np.array([height // 2]), np.array([width // 2]))[0, 0])
-        # What lies beyond the projection begins at the edge: better told now than when all is classified.
+        # What lies beyond the projection begins at the edge: reported now rather than when everything is
+        # classified.
         self._corner_areas(np.array([0, height - 1]), np.array([0, width - 1]))
         if not self.middle:
             raise self._no_area()
@@ -106,7 +108,7 @@ def to_degrees(crs: str) -> "Transformer":
         return Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
     except ProjError as error:
         raise InputError(
-            "no way from the raster's coordinate system to longitude and latitude on the Earth",
+            "the raster's coordinate system does not lead to longitude and latitude on the Earth",
             value=error,
             hint="correct the system, for instance with gdal_edit.py -a_srs",
         ) from error

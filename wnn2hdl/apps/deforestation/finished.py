@@ -1,4 +1,4 @@
-"""The windows of a scan that are classified, so that an interrupted one goes on where it stopped."""
+"""The windows of a scan that are classified, so that an interrupted one continues where it stopped."""
 
 import struct
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ _HEAD = struct.Struct("<IQQ")
 class FinishedWindows:
     """The results of a scan's windows in a journal; they may come in any order.
 
-    Held in memory is where they are.
+    Only their places are held in memory.
 
     Args:
         path: the journal's file.

@@ -23,7 +23,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.progress import Progress, reported
 
 _PARTS = 1000
-"""How finely it is told how far a folder's picture is."""
+"""Steps in which the progress over one picture of a folder is reported."""
 
 
 Scan = Callable[[Path, Path, Progress], Mapping[str, Any]]
@@ -46,7 +46,7 @@ def scan_folder(
         bands: those that are read.
         names: class names by index.
         scan: scans one.
-        progress: told how far all are.
+        progress: called with how far all of them are.
 
     Returns:
         the figures of all, for their summary.
@@ -121,6 +121,6 @@ def _figures(summaries: Sequence[Mapping[str, Any]], totals: Totals) -> dict[str
 
 
 def _part(progress: Progress, number: int, count: int, step: str, done: int, total: int) -> None:
-    """Tell how far a picture of a folder is; a line for each step of each would be too many."""
+    """Report how far a picture of a folder is; a line for each step of each would be too many."""
     if step == CLASSIFYING:
         progress("scanning pictures", int((number + done / total) * _PARTS), count * _PARTS)

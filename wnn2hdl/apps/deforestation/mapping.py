@@ -16,7 +16,7 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.raster import ClassWriter
 
 CLASSIFYING = "classifying windows"
-"""The step that `write_classes` tells of."""
+"""The step that `write_classes` reports."""
 
 Runner = Callable[[Task, Iterable[Window]], Generator[WindowResult, None, None]]
 """Classifies windows, in any order."""
@@ -51,7 +51,7 @@ def write_classes(
 ) -> Coverage:
     """Classify a picture and write its class raster.
 
-    Memory holds the windows being worked on and one row of windows, a byte a pixel. Finished windows are
+    Memory holds the windows being worked on and one row of windows, one byte per pixel. Finished windows are
     kept: an interrupted call that is repeated classifies the missing ones only.
 
     Args:
@@ -61,7 +61,7 @@ def write_classes(
         run: classifies windows.
         output: the class raster, see `ClassWriter`; without overviews.
         palette: the colour of each class.
-        progress: told of each window.
+        progress: called with each window.
 
     Raises:
         InputError: the picture cannot be read or the raster not written.

@@ -33,7 +33,7 @@ class ScanOptions:
             "bands": list(reading.bands) if reading.bands else None,
             "scale": list(reading.scale) if reading.scale else None,
             "alpha": reading.alpha,
-            "mask": str(reading.mask) if reading.mask else None,
+            "exclude": str(reading.exclude) if reading.exclude else None,
             **asdict(self.method),
             "minimum_pixels": (self.minimum and self.minimum.pixels) or None,
             "minimum_hectares": (self.minimum and self.minimum.hectares) or None,

@@ -20,7 +20,7 @@ _NODES = 9
 """Points along each side of a raster whose places on the Earth say where it lies."""
 
 _TOUCHING = 0.01
-"""Rasters of one system that share a strip no wider than so much of a pixel only touch."""
+"""Rasters of one system that share a strip no wider than this part of a pixel only touch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +112,9 @@ def shown_by(
         dataset: the open raster whose grid it is.
 
     Yields:
-        what tells which pixels of rows ``first`` to before ``end`` have data in any of them, by the pixels'
-        middles: bool ``[end - first, width]``. Grids that differ by whole pixels are compared pixel by pixel.
+        a function that says which pixels of rows ``first`` to before ``end`` have data in any of them, at the
+        pixels' middles: bool ``[end - first, width]``. Grids that differ by whole pixels are compared pixel
+        by pixel.
     """
     from rasterio.enums import Resampling
     from rasterio.vrt import WarpedVRT

@@ -50,7 +50,7 @@ def write_overlay(
     *,
     max_side: int = 2000,
 ) -> None:
-    """Write the overlay of a class raster as a PNG of at most ``max_side`` pixels a side.
+    """Write the overlay of a class raster as a PNG of at most ``max_side`` pixels on a side.
 
     A larger raster is thinned, from its overviews if it has some: no colour is mixed of two classes.
 

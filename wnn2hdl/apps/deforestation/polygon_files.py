@@ -45,7 +45,7 @@ Write = Callable[[Outlines], None]
 
 @contextmanager
 def geojson(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> Iterator[Write]:
-    """A feature collection in longitude and latitude, a feature a line.
+    """A feature collection in longitude and latitude, one feature per line.
 
     Without a georeference coordinates stay pixels, and the collection's member ``coordinates`` says so.
 

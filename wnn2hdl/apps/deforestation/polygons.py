@@ -46,7 +46,7 @@ def write_polygons(
         raster: a class raster.
         output: a file ending in ``.geojson`` or ``.gpkg``.
         names: class names by index.
-        progress: told of each strip, twice over.
+        progress: called with each strip, twice over.
         strip_pixels: how many pixels are worked on at a time; the polygons do not depend on it, only their
             order does.
 

@@ -21,7 +21,7 @@ NO_REGION = -1
 class Regions:
     """All regions of a raster: valid pixels of one class connected by their sides.
 
-    Memory is about 35 bytes a region.
+    Memory is about 35 bytes per region.
 
     Attributes:
         pixels: int64 ``[regions]``.
@@ -56,7 +56,7 @@ def find_regions(
     Args:
         dataset: the raster.
         strips: first row and end of each strip.
-        progress: told of the number of strips done.
+        progress: called with the number of strips done.
         areas: of the raster's pixels; None where regions need none.
     """
     from scipy import sparse

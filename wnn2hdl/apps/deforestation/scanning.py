@@ -62,7 +62,7 @@ class Scanner:
         digest: SHA-256 of the model file, or of the build's manifest, which holds those of its files.
         options: what is wanted.
         run: classifies windows, here or elsewhere.
-        progress: told of every step.
+        progress: called with every step.
     """
 
     model: Path
@@ -77,7 +77,7 @@ class Scanner:
         """Open a model.
 
         Raises:
-            InputError: it is no model or build, or it has more classes than a raster can hold.
+            InputError: it is not a model or build, or it has more classes than a raster can hold.
         """
         classifier = open_classifier(model)
         if len(classifier.classes) > NODATA:
@@ -94,13 +94,13 @@ class Scanner:
     ) -> dict[str, Any]:
         """Scan a picture, or all pictures of a folder.
 
-        A repeated call goes on where an interrupted one stopped.
+        A repeated call continues where an interrupted one stopped.
 
         Args:
             picture: a file; or a folder, whose pictures get a folder each in ``output``.
             output: the folder to write into.
             before: a picture of the same area at an earlier date.
-            before_reading: how it is read, with a mask of its own; what else it does not name is as for the
+            before_reading: how it is read, with its own mask; what else it does not name is as for the
                 later picture.
 
         Returns:
@@ -113,18 +113,18 @@ class Scanner:
             ExtraMissingError: the extra ``geo`` is not installed.
         """
         if picture.is_dir():
-            if before or self.options.reading.mask:
+            if before or self.options.reading.exclude:
                 raise InputError(
-                    "--before and --mask go with one picture, not with a folder",
+                    "--before and --exclude go with one picture, not with a folder",
                     value=picture,
-                    hint="name a file",
+                    hint="give a file",
                 )
             pictures = by_stem(picture)
             require_apart([self.model, *pictures.values()], output)
             with output_folder(output, "scan"):
                 return self._finish(output, self._folder(picture, pictures, output))
         after = open_picture(picture, self.options.reading)
-        # That pixels have no area is told before anything is written.
+        # Pixels without an area are reported before anything is written.
         self._check_place(after)
         if before is None:
             require_apart([self.model, *after.files], output)
@@ -195,7 +195,7 @@ class Scanner:
                 Calibration.read(before, then.bands),
                 picture,
                 Calibration.read(picture, now.bands),
-                "say --scale LOW:HIGH and --before-scale LOW:HIGH, each in the units of its own file",
+                "give --scale LOW:HIGH and --before-scale LOW:HIGH, each in the units of its own file",
             )
         earlier = open_picture(before, then)
         sizes = [(x.height, x.width) for x in (earlier, after)]
@@ -248,8 +248,8 @@ class Scanner:
         elif minimum is not None and minimum.hectares:
             raise InputError(
                 "the picture has no georeference, so its pixels have no area",
-                value=f"--minimum-area {minimum.hectares:g}",
-                hint="say --minimum-pixels",
+                value=f"--min-area {minimum.hectares:g}",
+                hint="give --min-pixels",
             )
 
     def _change(self, output: Path) -> dict[str, Any]:
@@ -275,7 +275,7 @@ class Scanner:
         return summary
 
     def _identity(self, files: Iterable[Path]) -> dict[str, Any]:
-        """What decides the result, as far as it can be told without reading all of the picture's files."""
+        """What decides the result, as far as it is known without reading all of the picture's files."""
         states = {file.absolute(): file.stat() for file in files}
         return {
             "version": wnn2hdl.__version__,

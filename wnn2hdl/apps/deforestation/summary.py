@@ -54,7 +54,7 @@ def warnings(note: str, coverage: Coverage) -> list[str]:
     found = [note] if note else []
     share = coverage.share
     if share is None:
-        found.append("no pixel is valid: nothing was classified")
+        found.append("no pixel is valid, so nothing was classified")
     elif share < FAMILIAR_SHARE:
         found.append(
             f"the imagery is foreign to the model: it knows the colours of {share:.1%} of the pixels, "

@@ -1,4 +1,4 @@
-"""What is to be done with every window of a picture: small enough to be sent to another machine."""
+"""What is done with every window of a picture: small enough to be sent to another machine."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +19,7 @@ class Task:
         reading: how it is read.
         classifier: what classifies it.
         method: squares and smoothing.
-        token: tells one scan from another of the same path, whose file may be a new one.
+        token: distinguishes this scan from another of the same path, whose file may have changed.
     """
 
     path: Path

@@ -10,7 +10,7 @@ WINDOW_PIXELS = 1 << 22
 """About the pixels of a window of a picture stored in rows."""
 
 BAND_PIXELS = 1 << 26
-"""At most so many pixels lie side by side in windows of the same rows: they are held until all are there."""
+"""Most pixels side by side in windows of the same rows: they are held until all of the windows are done."""
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,10 @@ class Window:
 
     Attributes:
         index: its number, row by row.
-        row: of its first pixel; likewise `column`.
-        height: pixels; likewise `width`.
+        row: of its top left pixel.
+        column: of its top left pixel.
+        height: pixels.
+        width: pixels.
     """
 
     index: int

@@ -3,7 +3,7 @@
 A pixel is compared with its surroundings, not with a fixed level: light and season change levels from one
 date to another, but seldom what is brighter, or redder, than what lies around it. Means of red and of blue
 over a square serve three images: red above its mean, blue above its mean, and red further above its mean than
-blue. The third tells bare ground from plants, which grey levels often cannot.
+blue. The third separates bare ground from plants, which grey levels often cannot.
 """
 
 import cv2

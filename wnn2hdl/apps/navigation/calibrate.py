@@ -4,8 +4,8 @@ Each calibration frame is laid on the ground with the camera as it is thought to
 levels in a small window around where it was. What is left between match and truth, ahead and to the right, is
 what the mount's angles have to explain; what scale and heading fit best, tell focal length and twist.
 
-Two things that nobody records are settled on the way: whether pitch and roll of the log reach the camera at
-all (a gimbal may keep it level), and whether the tilt was set anew in flight. The second is modelled as a
+Two things that logs do not record are settled on the way: whether pitch and roll of the log reach the camera
+at all (a gimbal may keep it level), and whether the tilt was set again in flight. The second is modelled as a
 tilt that is constant over stretches of the flight.
 """
 
@@ -36,7 +36,7 @@ SCALES = tuple(np.linspace(0.88, 1.12, 9).tolist())
 
 MIN_FRAMES = 3
 STRETCH_FRAMES = 3
-"""Fewest calibration frames in a stretch of its own tilt."""
+"""Fewest calibration frames in a stretch with its own tilt."""
 
 STRETCH_GAIN = 0.2
 """Another stretch must take away this part of the remaining error."""
@@ -95,8 +95,8 @@ class Calibration:
     def cameras_at(self, frame: str) -> tuple[Camera, ...]:
         """The cameras that may have taken a frame: of the stretch it lies in; between two, of either.
 
-        Where a frame lies is told by its name's number among those of the calibration's frames; if it is not
-        told, it may have been any.
+        A frame's place follows from its name's number among those of the calibration's frames; if it does
+        not, any of the cameras may have taken it.
         """
         if frame in self.frames:
             return (self.cameras[self.frames.index(frame)],)
@@ -140,12 +140,12 @@ def calibrate(
     """Fit gimbal, focal length, twist, lean and tilt.
 
     Args:
-        grid: the map's grid; coarser than for matching will do.
+        grid: the map's grid; it may be coarser than for matching.
         grey_map: uint8, the grid's picture in grey.
         frames: uint8 ``[height, width]`` each, grey.
         poses: of the frames, at least `MIN_FRAMES`, in the order of flight.
         camera: first guess; its focal length good to 10 %.
-        progress: told how many frames of how many have been looked for.
+        progress: called with how many of the frames have been looked for.
 
     Raises:
         InputError: too few frames, or most of them show nothing that is on the map; the log or the camera is
@@ -258,7 +258,7 @@ def _steps(values: NDArray[np.float64]) -> NDArray[np.float64]:
     def cost(bounds: list[int]) -> float:
         return float(np.abs(values - model(bounds)).sum())
 
-    # Each round adds a bound; there is room for so many.
+    # Each round adds a bound; there is room for no more.
     for _ in range(len(values) // STRETCH_FRAMES):
         finer = [
             sorted([*bounds, cut])

@@ -21,7 +21,7 @@ WIDEST_FOCAL_SHARE = 0.2
 """Of the frame's longer side: a lens of 136 degrees, beyond what the pinhole model can straighten."""
 
 LEAST_PRINCIPAL_SHARE = 0.2
-"""Of the frame's width and height: so near to the first pixel, a principal point is an offset or a share."""
+"""Of the frame's width and height: a principal point this near to the first pixel is an offset or a share."""
 
 KEYS = frozenset(
     {
@@ -112,7 +112,7 @@ class Camera:
             raise InputError("the camera's twist_deg is beyond 360 degrees", value=self.twist_deg)
 
     def require_pixels(self) -> None:
-        """Raise InputError if a length is probably none in pixels, or counted from elsewhere."""
+        """Raise InputError if a length is probably not in pixels, or counted from elsewhere."""
         longer = max(self.width, self.height)
         focal = min(self.fx, self.fy)
         if focal < WIDEST_FOCAL_SHARE * longer:
@@ -157,7 +157,7 @@ class Camera:
         wanted, ``distortion``, ``tilt_deg``, ``lean_deg``, ``twist_deg`` and ``stabilised``.
 
         Raises:
-            InputError: the file cannot be read, is no TOML, lacks a key or has one too many, or a value is
+            InputError: the file cannot be read, is not TOML, lacks a key or has one too many, or a value is
                 of the wrong kind, out of range, or probably in another unit.
         """
         try:
@@ -165,7 +165,7 @@ class Camera:
         except OSError as error:
             raise InputError("cannot read the camera", value=f"{path} ({error.strerror})") from error
         except (ValueError, RecursionError) as error:
-            raise InputError("the camera is no TOML", value=f"{path} ({error})", hint=_FORM) from error
+            raise InputError("the camera is not TOML", value=f"{path} ({error})", hint=_FORM) from error
         if not isinstance(table, dict):
             raise InputError("no camera in the file", value=path, hint=_FORM)
         camera = cls.of_table(table, path)
@@ -197,13 +197,15 @@ class Camera:
             whole = key in ("width", "height")
             if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)):
                 raise InputError(
-                    f"the camera {path}: {key} is no {'whole ' if whole else ''}number", value=repr(value)
+                    f"the camera {path}: {key} is not a {'whole ' if whole else ''}number", value=repr(value)
                 )
         distortion = table.get("distortion", [])
         if not isinstance(distortion, list) or not all(
             isinstance(value, (int, float)) and not isinstance(value, bool) for value in distortion
         ):
-            raise InputError(f"the camera {path}: distortion is no list of numbers", value=repr(distortion))
+            raise InputError(
+                f"the camera {path}: distortion is not a list of numbers", value=repr(distortion)
+            )
         try:
             if "focal" in numbers:
                 middle = cls.of_focal(numbers.pop("focal"), numbers["width"], numbers["height"])

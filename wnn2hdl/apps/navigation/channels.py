@@ -16,7 +16,7 @@ Channels = NDArray[np.bool_]
 """Binary images of one scene: bool ``[channels, height, width]``."""
 
 _GRAIN = 32
-"""Templates are padded to multiples of so many pixels, so that templates of like size share spectra."""
+"""Templates are padded to multiples of this many pixels, so that templates of similar size share spectra."""
 
 _KEPT = 2
 """Pieces of the map whose spectra are kept: the last window's and, as a rule, the whole map's."""
@@ -161,7 +161,7 @@ def _check(channels: Channels, inside: NDArray[np.bool_]) -> None:
     fitting = channels.ndim == 3 and channels.shape[1:] == inside.shape and channels.size > 0
     if not fitting or channels.dtype != np.bool_ or inside.dtype != np.bool_:
         raise InputError(
-            "these are no binary images to match",
+            "these are not binary images to match",
             value=f"{channels.dtype} {channels.shape} with {inside.dtype} {inside.shape}",
             hint="use bool of shape [channels, height, width] and of [height, width]",
         )

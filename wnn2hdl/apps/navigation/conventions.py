@@ -1,6 +1,6 @@
-"""Conventions in which others log a flight, told by the numbers alone: refused by name, never taken over.
+"""Other conventions for the log of a flight, recognised by the numbers alone: refused by name, never adopted.
 
-What only pictures tell is in `wnn2hdl.apps.navigation.explain`.
+What only pictures show is in `wnn2hdl.apps.navigation.explain`.
 """
 
 import math
@@ -21,10 +21,10 @@ GIMBAL_PITCH_DEG = 40.0
 """Half of a flight's frames or more beyond it: no aircraft flies so, but a gimbal's pitch is -90 below it."""
 
 GIMBAL_ROLL_DEG = 90.0
-"""Likewise: no aircraft flies on its back."""
+"""The same for roll: no aircraft flies on its back."""
 
 LEG_M = 5.0
-"""From frame to frame: shorter legs have no course that a receiver of positions could tell."""
+"""From frame to frame: shorter legs have no course that a receiver of positions could measure."""
 
 LEGS = 8
 """Fewest that decide."""
@@ -90,7 +90,7 @@ def require_aircraft_angles(poses: Sequence[Pose]) -> None:
 
     Raises:
         ExtraMissingError: pyproj is not installed.
-        InputError: so many pitch or roll angles are beyond an aircraft's that they are a gimbal's; or the
+        InputError: so many pitch or roll angles are beyond an aircraft's that they must be a gimbal's; or the
             aircraft flies along few of its headings, and along most as another convention counts them.
     """
     pitch = float(np.median([abs(pose.pitch_deg) for pose in poses]))

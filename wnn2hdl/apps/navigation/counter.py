@@ -15,7 +15,7 @@ def in_order(names: Sequence[str]) -> list[int]:
     """The order of flight.
 
     The order is the names' own where all are numbered alike: 7 before 12, and 9999 before 0001 where the
-    lines say that the counter rolled over in between. Where names tell no order, it is that of the lines.
+    lines say that the counter rolled over in between. Where names give no order, it is that of the lines.
 
     Args:
         names: of the frames' files, in the order of the lines.
@@ -57,8 +57,8 @@ def frame_times(names: Sequence[str]) -> list[int] | None:
         names: in the order of flight.
 
     Returns:
-        a number for each, rising, also where the counter rolled over; None unless each name has one of its
-        own and the same text before it, and they rise.
+        a number for each, rising, also where the counter rolled over; None unless all names have different
+        numbers after the same text, and they rise.
     """
     numbered = _numbers(names)
     return _unrolled(*numbered) if numbered else None
@@ -68,7 +68,7 @@ def time_among(names: Sequence[str], name: str) -> tuple[list[int], int] | None:
     """The times of frames in the order of flight, and that of another frame by the same clock.
 
     Returns:
-        as `frame_times`; None if the names do not tell. After a rollover, the time nearest to the others.
+        as `frame_times`; None if the names give no times. After a rollover, the time nearest to the others.
     """
     times = frame_times(names)
     numbered = _numbers([*names, name]) if name not in names else None
@@ -80,7 +80,7 @@ def time_among(names: Sequence[str], name: str) -> tuple[list[int], int] | None:
 
 
 def _numbers(names: Sequence[str]) -> tuple[list[int], int] | None:
-    """The number of each name, and after how many a counter starts anew: 0 for never."""
+    """The number of each name, and after how many a counter starts again: 0 for never."""
     found = [re.fullmatch(r"(.*?)([0-9]+)(\.[^.]*)?", name) for name in names]
     parts = [(match[1], match[2]) for match in found if match is not None]
     if len(parts) < len(names):

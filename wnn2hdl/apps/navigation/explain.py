@@ -1,9 +1,9 @@
-"""Which convention is a log written in? Calibration frames tell, laid out as if it meant this or that.
+"""The convention of a log, found by laying out calibration frames as if it meant this or that.
 
 With the right meaning, matches lie beside the truth by the same distance ahead and to the right, which the
 camera's unknown tilt makes; with a wrong one they lie anywhere in the window that is searched. So meanings
-are compared by how many frames agree, weighted by how far their matches stand out. Another meaning than the
-stated one is never taken over, but named.
+are compared by how many frames agree, weighted by how far their matches stand out. A meaning other
+than the stated one is never adopted, but named in the error.
 """
 
 from collections.abc import Sequence
@@ -31,10 +31,10 @@ MOST = 0.6
 """Share of the frames that have to agree, four at least, for a meaning to explain them."""
 
 DECISIVE = 2.0
-"""So many times better than the stated meaning another one has to explain the frames."""
+"""How many times better than the stated meaning another one has to explain the frames."""
 
 _KNOWN_SCALE = 0.15
-"""A focal length or height this share off is no other convention; calibration fits it."""
+"""A focal length or height this share off is not another convention; calibration fits it."""
 
 _SCALE_STEP = 1.15
 """Between heights that are tried; a match survives half of it."""
@@ -66,7 +66,7 @@ def require_stated_meaning(lookout: Lookout, camera: Camera, progress: Progress)
     Args:
         lookout: the frames.
         camera: as given.
-        progress: told how many frames have been looked for.
+        progress: called with how many frames have been looked for.
 
     Raises:
         InputError: another meaning explains the frames decisively better.
@@ -180,7 +180,7 @@ def _evidence(lookout: Lookout, camera: Camera, headings: Sequence[float]) -> Ev
         try:
             sight = lookout.sight(number, camera, headings)
         except InputError:
-            # So much ground, or none: whatever such a pose means, the frame does not agree with it.
+            # Too much ground, or none: whatever such a pose means, the frame does not agree with it.
             lookout.looked()
             continue
         if sight is not None and sight.score > 0:

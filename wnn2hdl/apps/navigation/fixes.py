@@ -16,7 +16,7 @@ from wnn2hdl.apps.navigation.results import FAR_M, FrameFix
 from wnn2hdl.apps.navigation.track import Fix, follow
 
 UNCALIBRATED = Acceptance(0.0, 0.0, 1.0)
-"""Without calibration frames nothing is known of a confidence's worth, so every position is given."""
+"""Without calibration frames the worth of a confidence is unknown, so every position is given."""
 
 PRECISION = 0.95
 """Share of the fixes given that should be right: off by less than `FAR_M`."""
@@ -42,7 +42,7 @@ def fixes(
 def accepted(grid: MapGrid, poses: Sequence[Pose], located: Sequence[Located | None]) -> Acceptance:
     """From which confidence on a fix is given, by frames whose position is known.
 
-    What a match would have been worth without the peaks near the truth, tells what a wrong match looks like.
+    What a match would have been worth without the peaks near the truth shows what a wrong match looks like.
     The threshold lies in the middle between the least confidence to be accepted and the next lower one of a
     wrong match, as nothing is known of what lies between them. Where no threshold is expected to make
     `PRECISION` of the fixes right, none are given.

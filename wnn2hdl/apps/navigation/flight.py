@@ -31,8 +31,8 @@ from wnn2hdl.progress import Progress, reported
 T = TypeVar("T")
 
 MOST_ACROSS = 300
-"""Calibration's patches have about so many pixels across at most: their searches take no longer, however high
-the flight is, or is said to be."""
+"""The patches of the calibration are at most about this many pixels across, so that their searches take no
+longer, however high the flight is, or is said to be."""
 
 COARSER = 2
 """Calibration matches on a grid this much coarser: it needs metres, not half metres."""
@@ -80,11 +80,11 @@ def run_flight(
             confidence are fitted; or what was learned so before; empty to take all as it is.
         searches: by kind, half the side in metres of a window around the logged position; None for the whole
             map.
-        progress: what to tell how far it is.
+        progress: called with how far the run is.
         keys: of the methods that are compared, at least one.
-        heading_deg: how far the logged headings may be off; if not told, what the calibration found, or 0.
+        heading_deg: how far the logged headings may be off; by default what the calibration found, or 0.
         scale: share by which the logged heights may be off.
-        jobs: frames located at a time; as many as the machine has cores if not told.
+        jobs: frames located at a time; by default as many as the machine has cores.
 
     Raises:
         InputError: a frame cannot be read, or the calibration fails or belongs to other conditions; a
@@ -228,8 +228,8 @@ def _in_parallel(
 ) -> Iterator[T]:
     """Results in order. Threads, since they share the map and spend their time in OpenCV and NumPy.
 
-    OpenCV gets no threads besides, whose time would be counted to no frame. However it ends, no thread is
-    left behind: one inside OpenCV while Python goes down would abort the process.
+    OpenCV gets no further threads, whose time would not be counted for any frame. However it ends, no thread
+    is left behind: one inside OpenCV while Python goes down would abort the process.
     """
     workers = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
     threads = cv2.getNumThreads()

@@ -50,7 +50,7 @@ class Patch:
         valid: bool ``[rows, columns]``: the frame shows this pixel.
         nadir_row: row of the ground point straight below the UAV; it may lie outside the patch.
         nadir_col: column of it.
-        gsd_m: ground sample distance, metres a pixel.
+        gsd_m: ground sample distance, metres per pixel.
     """
 
     image: NDArray[np.uint8]
@@ -103,7 +103,7 @@ def ground_patch(frame: NDArray[np.uint8], pose: Pose, camera: Camera, gsd_m: fl
         frame: uint8 ``[height, width]`` or ``[height, width, 3]``, of the camera's size or scaled from it.
         pose: where the camera was and how it was turned.
         camera: the camera.
-        gsd_m: metres a pixel of the patch.
+        gsd_m: metres per pixel of the patch.
 
     Returns:
         A patch around all the frame shows, up to `MAX_OBLIQUE_DEG` from straight down.

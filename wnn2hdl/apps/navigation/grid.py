@@ -25,7 +25,7 @@ class MapGrid:
     Attributes:
         image: uint8 ``[rows, columns, 3]``: red, green, blue; 0 where not valid.
         valid: bool ``[rows, columns]``: the map shows this pixel.
-        gsd_m: ground sample distance, metres a pixel.
+        gsd_m: ground sample distance, metres per pixel.
         origin_m: metres east and north of the centre of pixel (0, 0) from the middle.
         latitude_deg: of the middle.
         longitude_deg: of the middle.

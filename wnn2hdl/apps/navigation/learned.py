@@ -1,4 +1,4 @@
-"""What calibration frames teach, kept in ``calibration.json`` and read back for other flights alike."""
+"""What is learned from calibration frames, kept in ``calibration.json`` and read back for similar flights."""
 
 import math
 from collections.abc import Collection, Mapping
@@ -43,7 +43,7 @@ class Conditions:
 
 @dataclass(frozen=True)
 class Learned:
-    """All that calibration frames have taught.
+    """All that was learned from calibration frames.
 
     Attributes:
         conditions: under which.
@@ -80,7 +80,7 @@ class Learned:
                     "half_width_m": half,
                     "methods": {
                         method: asdict(acceptance)
-                        # JSON has no infinity: none stands for a threshold that nothing reaches.
+                        # JSON has no infinity: null stands for a threshold that nothing reaches.
                         | {"threshold": acceptance.threshold if math.isfinite(acceptance.threshold) else None}
                         for (search, method), acceptance in self.acceptances.items()
                         if search == kind
@@ -96,7 +96,7 @@ class Learned:
         """The inverse of `write`.
 
         Raises:
-            InputError: the file cannot be read, or is no calibration of this version.
+            InputError: the file cannot be read, or is not a calibration of this version.
         """
         data = read_json(path, "a calibration")
         if data.get("version") != VERSION or "searches" not in data:
@@ -174,11 +174,11 @@ class Learned:
             name: (value, getattr(conditions.camera, name)) for name, value in vars(known.camera).items()
         }
         pairs["--heading-tolerance"] = (known.tolerance.heading_deg, conditions.tolerance.heading_deg)
-        pairs["--scale-tolerance"] = (known.tolerance.scale * 100, conditions.tolerance.scale * 100)
+        pairs["--height-tolerance"] = (known.tolerance.scale * 100, conditions.tolerance.scale * 100)
         for kind, half in windows.items():
             if kind not in self.windows:
                 raise InputError(
-                    "the calibration has no thresholds for such a search",
+                    "the calibration has no thresholds for this search",
                     value=kind,
                     hint="calibrate with the same --search",
                 )
@@ -207,11 +207,11 @@ def _fit(fields: dict[str, Any]) -> Fit:
 
 def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{value!r} is not a number")
     return value
 
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
-        raise TypeError(f"{value!r} is no text")
+        raise TypeError(f"{value!r} is not a text")
     return value

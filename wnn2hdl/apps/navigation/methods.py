@@ -15,7 +15,7 @@ from wnn2hdl.edges import canny, grey, sobel
 from wnn2hdl.edges.reference import CANNY_SIGMA
 
 EDGE_SHARE = 0.2
-"""Share of a picture's pixels whose gradient reaches the threshold of Sobel, and of Canny to go on with."""
+"""Share of a picture's pixels whose gradient reaches the threshold of Sobel, and the lower one of Canny."""
 
 CANNY_RATIO = 2.5
 """Canny's upper threshold, to start an edge with, over his lower; he advised 2 to 3."""
@@ -92,9 +92,9 @@ def compared_methods(weightless: WeightlessEdges, keys: Collection[str] = METHOD
 def canny_edges(
     picture: NDArray[np.uint8], valid: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Canny's edges, one pixel thicker all around: a thin line misses its like by a pixel.
+    """Canny's edges, one pixel thicker all around: a thin line may miss its counterpart by one pixel.
 
-    Thresholds are the picture's own: what is an edge in sunlit streets has no like on ploughed fields.
+    Thresholds are the picture's own: an edge in sunlit streets is much stronger than one on ploughed fields.
     """
     levels = grey(picture)
     # The Gaussian before and the line's growth after reach five pixels.

@@ -31,7 +31,7 @@ SCALE_STEP = 0.04
 """Between heights that are tried: half of it moves an edge 60 m off the frame's middle by 1.2 m."""
 
 APART_M = 20.0
-"""Peaks are at least so far apart in rows or columns, metres: else they are one peak's two sides."""
+"""Peaks are at least this far apart in rows or columns, metres; nearer ones are two sides of one peak."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class PoseTolerance:
     """How far the log may be off; the poses between are tried.
 
     Attributes:
-        heading_deg: headings up to so much beside the logged one, degrees.
+        heading_deg: headings up to this far from the logged one, degrees.
         scale: heights up to this share above and below the logged one, which an error of the scale comes to.
     """
 

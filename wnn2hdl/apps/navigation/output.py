@@ -20,7 +20,7 @@ TABLE_VERSION = 1
 class PublishedMethod:
     """A row of the reference's table: another flight, 35 frames, searched within ±95 m of the truth.
 
-    Its frames are 219 pixels wide and its windows 599, at half a metre a pixel.
+    Its frames are 219 pixels wide and its windows 599, at half a metre per pixel.
     """
 
     name: str
@@ -61,12 +61,12 @@ The published rows were measured on a flight that is not at hand, searched withi
 their errors could exceed 134 m, and a blind guess would have been 73 m off on average."""
 
 _UNCALIBRATED = """\
-Nothing was calibrated, so nothing is known of a confidence's worth: a frame by itself always has its best
-position given as a fix, right or wrong."""
+Nothing was calibrated, so the worth of a confidence is unknown: the best position of a single frame is always
+given as a fix, right or wrong."""
 
 
 def write_results(folder: Path, result: FlightResult) -> tuple[Path, ...]:
-    """Write ``flight.md``, ``flight.json``, ``table.csv``, ``frames.csv`` and a GeoJSON a search.
+    """Write ``flight.md``, ``flight.json``, ``table.csv``, ``frames.csv`` and one GeoJSON per search.
 
     Args:
         folder: made if it does not exist; files of these names are replaced.
@@ -85,7 +85,7 @@ def write_results(folder: Path, result: FlightResult) -> tuple[Path, ...]:
         "frames.csv": frames_csv(result),
     }
     for search in result.searches:
-        # One feature a line: such files are read by programs and compared by lines.
+        # One feature per line: such files are read by programs and compared by lines.
         features = ",\n".join(json.dumps(feature, ensure_ascii=False) for feature in fix_features(search))
         texts[f"fixes_{search.key}.geojson"] = (
             f'{{"type": "FeatureCollection", "features": [\n{features}\n]}}\n'
@@ -97,7 +97,7 @@ def write_results(folder: Path, result: FlightResult) -> tuple[Path, ...]:
 
 
 def flight_dict(result: FlightResult) -> dict[str, Any]:
-    """The JSON object of ``flight.json``: every figure and every frame; numbers that are none become null."""
+    """The JSON object of ``flight.json``: every figure and every frame; NaN and infinities become null."""
     return {
         "version": TABLE_VERSION,
         "map": result.map_name,
@@ -196,7 +196,8 @@ def flight_markdown(result: FlightResult) -> str:
     difference = result.largest_geodesic_difference_m
     sections = [
         "# Positions from edges",
-        f"Map {escaped(result.map_name)} at {result.ground_sample_distance_m:g} m a pixel; camera {fitted}: "
+        f"Map {escaped(result.map_name)} at {result.ground_sample_distance_m:g} m per pixel; camera "
+        f"{fitted}: "
         f"focal length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
         _left_out(result),
         _STATISTICS,
@@ -256,7 +257,7 @@ def _search_sections(search: SearchResult, calibrated: bool) -> list[str]:
         _PUBLISHED_NOTE,
         "What the confidence is worth:",
         _table(
-            ["method", "frames", "fixed", f"fixes < {FAR_M:g} m", "mean error of fixes m", "s a frame"],
+            ["method", "frames", "fixed", f"fixes < {FAR_M:g} m", "mean error of fixes m", "s per frame"],
             confident,
         ),
         _without_fix(search),
@@ -269,8 +270,8 @@ def _without_fix(search: SearchResult) -> str:
     if not silent:
         return ""
     return (
-        f"No fix is given by {', '.join(silent)}: by what the calibration's frames tell, none of their "
-        "positions is sure enough. More frames to calibrate on, ten or more, often help."
+        f"No fix is given by {', '.join(silent)}: judging by the calibration's frames, none of their "
+        "positions is sure enough. Calibrating on more frames, ten or more, often helps."
     )
 
 
@@ -313,7 +314,7 @@ def _point(longitude: float, latitude: float, properties: dict[str, Any]) -> dic
 
 
 def _finite(fields: dict[str, Any]) -> dict[str, Any]:
-    """The fields with None for infinities and NaN, which JSON has no word for."""
+    """The fields with None for infinities and NaN, which JSON cannot express."""
     return {
         key: None if isinstance(value, float) and not math.isfinite(value) else value
         for key, value in fields.items()

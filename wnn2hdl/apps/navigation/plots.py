@@ -20,7 +20,7 @@ ToPixel = Callable[[ArrayLike, ArrayLike], tuple[NDArray[np.float64], NDArray[np
 """Rows and columns of a picture from latitudes and longitudes in degrees."""
 
 COLOURS = ("#D55E00", "#56B4E9", "#F0E442", "#009E73", "#CC79A7", "#E69F00", "#0072B2")
-"""Of the methods in their order, told apart by the colour-blind too (Okabe and Ito, 2008)."""
+"""Of the methods in their order; the colour-blind can distinguish them too (Okabe and Ito, 2008)."""
 
 _MARKERS = "osD^vPX"
 

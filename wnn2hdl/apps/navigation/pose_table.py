@@ -46,15 +46,15 @@ _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 def read_rows(path: Path) -> Iterator[tuple[str, dict[str, str]]]:
     """Each line of a CSV whose first line names `COLUMNS`, in any order among others.
 
-    Those of the position may lack together. Blanks around names and values do not count, and neither do lines
-    without any value.
+    Both columns of the position may be missing together. Blanks around names and values do not count, and
+    neither do lines without any value.
 
     Yields:
         where the line stands, for complaints, and its values by the names of the columns.
 
     Raises:
-        InputError: the file cannot be read or is no CSV; a column lacks or is named twice; a line has more or
-            fewer cells than the first.
+        InputError: the file cannot be read or is not CSV; a column is missing or named twice; a line has more
+            or fewer cells than the first.
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
@@ -71,7 +71,7 @@ def read_rows(path: Path) -> Iterator[tuple[str, dict[str, str]]]:
         raise InputError("cannot read the poses", value=f"{path} ({error.strerror})") from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(
-            "the poses are no CSV", value=f"{path} ({error})", hint="save them as CSV in UTF-8"
+            "the poses are not CSV", value=f"{path} ({error})", hint="save them as CSV in UTF-8"
         ) from error
 
 
@@ -79,7 +79,7 @@ def number(text: str, name: str, where: str) -> float:
     """A cell as a number.
 
     Raises:
-        InputError: it is none, as programs write numbers everywhere: digits and a decimal point.
+        InputError: it is not a number as programs write it everywhere: digits and a decimal point.
     """
     if _NUMBER.fullmatch(text):
         return float(text)
@@ -88,7 +88,7 @@ def number(text: str, name: str, where: str) -> float:
         hint = "write decimals with a point"
     elif re.search("[°'\"NSEWnsew]", text) and re.search("[0-9]", text):
         hint = "write decimal degrees, negative in the south and in the west"
-    raise InputError(f"{where}: {name} is no number", value=repr(text), hint=hint)
+    raise InputError(f"{where}: {name} is not a number", value=repr(text), hint=hint)
 
 
 def _check_names(path: Path, names: Sequence[str]) -> None:
@@ -123,7 +123,7 @@ def _check_names(path: Path, names: Sequence[str]) -> None:
 
 
 def _alike(name: str, names: Sequence[str]) -> str | None:
-    """A header that is probably meant for a column that lacks, by its words or its spelling."""
+    """A header that is probably meant for a missing column, by its words or its spelling."""
     others = [other for other in names if other not in COLUMNS]
     for other in others:
         if {word.lower() for word in _WORD.findall(other)} & _NAMES_OF_OTHERS[name]:
@@ -138,7 +138,7 @@ def _check_length(where: str, names: Sequence[str], values: Sequence[str]) -> No
         raise InputError(
             f"{where} ends before the column {names[len(values)]}",
             value=f"{len(values)} cells, not {len(names)}",
-            hint="give each line all cells, empty where nothing is known",
+            hint="give every line all cells, empty where a value is not known",
         )
     if len(values) > len(names):
         raise InputError(

@@ -28,8 +28,8 @@ class Pose:
 
     Attributes:
         frame: name of the frame's file.
-        latitude_deg: WGS 84, north positive; NaN where nobody knows, likewise the longitude.
-        longitude_deg: WGS 84, east positive.
+        latitude_deg: WGS 84, north positive; NaN if not known.
+        longitude_deg: WGS 84, east positive; NaN if not known.
         height_m: above the ground, metres.
         yaw_deg: heading, clockwise from north: 90 flies east.
         pitch_deg: nose up positive.
@@ -51,7 +51,7 @@ class Pose:
 
 
 def read_poses(path: Path) -> tuple[Pose, ...]:
-    """Read a CSV with the columns `pose_table.COLUMNS`, one line a frame; those of the position may lack.
+    """Read a CSV with the columns `pose_table.COLUMNS`, one line per frame; the position's may be missing.
 
     Returns:
         The poses in the order of flight, by `counter.in_order`.
@@ -62,7 +62,7 @@ def read_poses(path: Path) -> tuple[Pose, ...]:
     """
     poses = [_pose(row, where) for where, row in read_rows(path)]
     if not poses:
-        raise InputError("no poses", value=path, hint="give one line a frame")
+        raise InputError("no poses", value=path, hint="give one line per frame")
     seen: set[str] = set()
     for pose in poses:
         if pose.frame in seen:

@@ -32,7 +32,7 @@ class Recording:
         map_name: for tables.
         world: the map.
         camera: as it is known before any calibration.
-        poses: one a frame, in the order of the flight.
+        poses: one per frame, in the order of the flight.
         read: the frame of a pose, uint8 ``[height, width, 3]``.
     """
 
@@ -60,8 +60,8 @@ class Recording:
 
         Raises:
             ExtraMissingError: rasterio or pyproj is not installed.
-            InputError: the map or a frame is missing or cannot be used, or has not the camera's shape; no
-                position is on the map; the camera's numbers are probably no pixels.
+            InputError: the map or a frame is missing or cannot be used, or does not have the camera's
+                shape; no position is on the map; the camera's numbers are probably not in pixels.
         """
         world = WorldMap.read(map_file, reading)
         require_over_map([*files], world)

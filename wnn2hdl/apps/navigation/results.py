@@ -31,7 +31,7 @@ class FrameFix:
 
     Attributes:
         frame: name of the frame's file.
-        truth_latitude: degrees, where the UAV was; None where nobody knows.
+        truth_latitude: degrees, where the UAV was; None if not known.
         truth_longitude: degrees, or None together with ``truth_latitude``.
         latitude: degrees, where the method puts it; None if the method has no position at all to offer
             (the frame shows nothing to match, or a filter has not started).
@@ -60,12 +60,12 @@ class MethodResult:
     """One method over all frames that were scored.
 
     The reference gives a position for every frame, so its five figures (mean, standard deviation, variance
-    and the two shares at `FAR_M`) are taken here over all frames with a position, confident or not. What the
-    confidence is worth is told by the figures of the fixes.
+    and the two shares at `FAR_M`) are taken here over all frames with a position, confident or not. The
+    figures of the fixes show what the confidence is worth.
 
     Attributes:
         name: as the tables show it, "perspective + Canny".
-        fixes: one a frame, in the order of the flight.
+        fixes: one per frame, in the order of the flight.
         tracked: whether a filter over the track made them of the method's own.
         weightless: whether the method is the project's own, the weightless edges.
     """
@@ -136,7 +136,7 @@ class MethodResult:
 
     @property
     def mean_seconds(self) -> float | None:
-        """Mean processor time a frame."""
+        """Mean processor time per frame."""
         return _mean([fix.seconds for fix in self.fixes])
 
 
@@ -173,9 +173,9 @@ class SearchResult:
         nearer = [method for method in alone if method.mean_m is not None and method.mean_m < own.mean_m]
         if not nearer:
             return ""
-        told = ", ".join(f"{method.name} ({method.mean_m:.1f} m)" for method in nearer)
+        named = ", ".join(f"{method.name} ({method.mean_m:.1f} m)" for method in nearer)
         verb = "is" if len(nearer) == 1 else "are"
-        return f"On this flight {told} {verb} nearer on average than {own.name} ({own.mean_m:.1f} m)."
+        return f"On this flight {named} {verb} nearer on average than {own.name} ({own.mean_m:.1f} m)."
 
     @property
     def furthest_m(self) -> float | None:
@@ -200,7 +200,7 @@ class FlightResult:
 
     Attributes:
         map_name: file name of the map.
-        ground_sample_distance_m: metres a pixel at which frames and map were compared.
+        ground_sample_distance_m: metres per pixel at which frames and map were compared.
         focal_px: focal length in pixels of the frames as given or fitted.
         tilts_deg: the camera's forward tilt as given, or as fitted for each stretch of the flight, degrees.
         calibrated_on: frames on which unknowns of the camera were fitted; empty if it was given.

@@ -49,7 +49,7 @@ class Lookout:
     """Calibration frames and the map they are looked for on.
 
     Attributes:
-        grid: the map's grid; coarser than for matching will do.
+        grid: the map's grid; it may be coarser than for matching.
         index: of its grey levels.
         frames: uint8 ``[height, width]`` each, grey.
         poses: of the frames, in the order of flight.
@@ -94,7 +94,7 @@ class Lookout:
 
 
 def steps(progress: Progress, step: str, total: int) -> Callable[[], None]:
-    """What to call after each of so many steps, to report them; called more often, it stays at the end."""
+    """A function to call after each of ``total`` steps, to report them; further calls report the end."""
     progress(step, 0, total)
     done: Iterator[int] = iter(range(1, total + 1))
     return lambda: progress(step, next(done, total), total)

@@ -41,7 +41,7 @@ def summary(run: FlightRun) -> dict[str, Any]:
 
 
 def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
-    """Write tables, GeoJSON, plots of errors and tracks, and what was learned; an earlier run's files go.
+    """Write tables, GeoJSON, plots of errors and tracks, and what was learned; an earlier run's are removed.
 
     Where no truth is known there are no errors to plot.
 

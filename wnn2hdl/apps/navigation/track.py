@@ -3,9 +3,9 @@
 The filter keeps several hypotheses of which fixes were right (multiple hypothesis tracking: D. B. Reid, IEEE
 Trans. Automatic Control 24 (6), 1979). Each frame offers some fixes, the best positions of its search; a
 hypothesis takes one of them, or none, and is weighted by how well it had predicted it. So a wrong fix at the
-start does not mislead for ever, and the second best position of a frame may be the one that fits the track. A
-hypothesis that has taken nothing for so long that it knows nothing better than the whole area starts anew;
-and any may have been wrong all along, and start anew at a fix.
+start does not mislead forever, and the second best position of a frame may be the one that fits the track. A
+hypothesis that has taken nothing for so long that it knows nothing better than the whole area starts again;
+and any may have been wrong all along, and start again at a fix.
 Nothing looks into the future: the position of a frame follows from it and the frames before.
 """
 
@@ -26,7 +26,7 @@ GATE = 13.8
 """Squared Mahalanobis distance beyond which a fix does not belong to a track: 1 in 1000 right ones does."""
 
 HYPOTHESES = 30
-"""So many are kept from frame to frame."""
+"""Hypotheses that are kept from frame to frame."""
 
 RESTART = 0.02
 """How likely a track that has been followed was wrong: then the next fix is as good a start as the first was.
@@ -35,7 +35,8 @@ At 0.005 to 0.05 two real flights come out alike; without, a track that has sett
 """
 
 SPEED_STD_M = 60.0
-"""Standard deviation of either component of the velocity before anything is known, metres a unit of time."""
+"""Standard deviation of either component of the velocity before anything is known, metres per unit of
+time."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Fix:
         north_m: in local metres.
         std_m: standard deviation of a right fix in either direction.
         weight: how likely this fix is the right one of its frame, 0 to 1. The weights of a frame's fixes
-            sum to at most 1; what lacks is the chance that none is right.
+            sum to at most 1; the rest is the chance that none is right.
     """
 
     east_m: float
@@ -99,7 +100,7 @@ def follow(
         frames: what each frame's search offers, in the order of flight; nothing where there is no fix.
         times: when each frame was taken, not falling, in any unit, as `counter.frame_times`;
             one unit apart if not given.
-        acceleration_m: standard deviation of the acceleration, metres a squared unit of time. The default
+        acceleration_m: standard deviation of the acceleration, metres per squared unit of time. The default
             is that of two real flights whose unit is the number in a frame's name (9 and 18, measured).
         area_m2: area over which wrong fixes scatter: that of the map, or of the search window.
         right_m: how near to the truth a position must be to count as right, metres.
@@ -126,7 +127,7 @@ def follow(
             )
         hypotheses = [_moved(hypothesis, now - last, acceleration_m, area_m2) for hypothesis in hypotheses]
         last = now
-        # Never quite 0: a filter that has lost its way must be able to go on.
+        # Never quite 0: a filter that has lost its way must be able to continue.
         nothing = math.log(max(missed, 0.01) / area_m2)
         branches = [
             branch for hypothesis in hypotheses for branch in _branches(hypothesis, fixes, nothing, area_m2)
@@ -140,16 +141,16 @@ def follow(
 def _branches(
     hypothesis: _Hypothesis, fixes: Sequence[Fix], nothing: float, area_m2: float
 ) -> Iterator[_Hypothesis]:
-    """What can become of a hypothesis: it takes one of the fixes, or starts anew at it, or takes none."""
+    """What can become of a hypothesis: it takes one of the fixes, or starts again at it, or takes none."""
     yield _Hypothesis(hypothesis.kalman, hypothesis.weight + nothing, None)
     for number, fix in enumerate(fixes):
         if not fix.weight:
             continue
-        anew = math.log(fix.weight / area_m2)
+        restart = math.log(fix.weight / area_m2)
         if hypothesis.kalman is None:
-            yield _Hypothesis(_start(fix), hypothesis.weight + anew, number)
+            yield _Hypothesis(_start(fix), hypothesis.weight + restart, number)
             continue
-        yield _Hypothesis(_start(fix), hypothesis.weight + math.log(RESTART) + anew, number)
+        yield _Hypothesis(_start(fix), hypothesis.weight + math.log(RESTART) + restart, number)
         kalman = deepcopy(hypothesis.kalman)
         kalman.update(np.array([[fix.east_m], [fix.north_m]]), R=np.eye(2) * fix.std_m**2)
         distance = float((kalman.y.T @ kalman.SI @ kalman.y).item())
@@ -192,7 +193,7 @@ def _point(hypotheses: Sequence[_Hypothesis], right_m: float) -> TrackPoint | No
     weights = np.exp([hypothesis.weight - best.weight for hypothesis in hypotheses])
     near = np.zeros(len(hypotheses))
     for number, kalman in enumerate(hypothesis.kalman for hypothesis in hypotheses):
-        # One that knows no position does not speak for this one.
+        # A hypothesis without a position says nothing about this one.
         if kalman is not None:
             other_east, other_north, std = _position(kalman)
             apart = math.hypot(other_east - east, other_north - north)

@@ -5,7 +5,7 @@ four turns, for edges whose brighter side lies east, north, west or south. That 
 images, the channels. In hardware these are twelve edge filters, all with the same 512-entry table but for the
 order of its nine inputs, behind two box means and three comparators.
 
-Edges without a direction are a poor witness: in a town every place has some, and those of another date lie
+Edges without a direction are poor evidence: in a town every place has some, and those of another date lie
 beside them. A direction must agree as well, which a wrong place does by chance a quarter of the time.
 
 The patterns are learned as a WiSARD learns: a RAM addressed by the window counts, over frames whose place is
@@ -35,19 +35,19 @@ from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.ir import WINDOW_BITS, WINDOW_CODES, EdgeFilter, bits_to_codes, codes_to_bits, window_codes
 
 GSD_M = 2.0
-"""Ground sample distance that the edges are taken at, metres a pixel."""
+"""Ground sample distance that the edges are taken at, metres per pixel."""
 
 THRESHOLD_M = 30.0
 """Side of the square whose mean is the local threshold: larger than a house, smaller than a field."""
 
 LIFT = 1.25
-"""A pattern is learned if the map has the edge so many times as often there as anywhere."""
+"""A pattern is learned if the map has the edge this many times as often there as anywhere."""
 
 PRIOR = 20.0
-"""Each pattern counts as seen so many times beforehand, beside edges as often as anywhere."""
+"""Each pattern counts as seen this many times beforehand, beside edges as often as anywhere."""
 
 REGISTER_M = 40.0
-"""So far around its place a training frame is looked for: what a tilt of 18 degrees makes at 120 m."""
+"""How far around its place a training frame is looked for: what a tilt of 18 degrees makes at 120 m."""
 
 TURNS = 4
 _WINDOWS = codes_to_bits(np.arange(WINDOW_CODES), WINDOW_BITS).reshape(WINDOW_CODES, 3, 3)
@@ -60,7 +60,7 @@ class Sighting:
     Attributes:
         patches: the frame laid on the ground, once for each heading that is thought possible.
         row: of the point below the UAV, pixels of the map's grid.
-        column: likewise.
+        column: of the same point.
     """
 
     patches: tuple[Patch, ...]
@@ -73,7 +73,7 @@ class WeightlessEdges:
     """Binary images and edge filters, of which only one direction's patterns are kept.
 
     Attributes:
-        gsd_m: ground sample distance of the pictures that it is meant for, metres a pixel.
+        gsd_m: ground sample distance of the pictures that it is meant for, metres per pixel.
         side: of the local threshold's square, pixels, odd.
         east: the filter of edges whose brighter side lies east.
     """

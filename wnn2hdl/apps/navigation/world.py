@@ -73,7 +73,7 @@ class WorldMap:
             raise InputError(
                 "the map is too large",
                 value=f"{path} ({shape[1]}x{shape[0]})",
-                hint="cut the country that was flown over out of it",
+                hint="cut out the country that was flown over",
             )
         return cls(source, shape, rasterio.Affine(*place.transform), place.crs)
 
@@ -103,7 +103,7 @@ class WorldMap:
             return transformer(self.crs)
         except ProjError as error:
             raise InputError(
-                "the map's coordinate system tells no latitudes and longitudes",
+                "the map's coordinate system does not give latitudes and longitudes",
                 value=self.crs,
                 hint="give a map in a geographic or projected coordinate system, as UTM",
             ) from error
@@ -166,7 +166,7 @@ class WorldMap:
         regions that reach the picture's edge (mosaics are often saved without a mask), the grid is not valid.
 
         Args:
-            gsd_m: metres a pixel; the map's own if not given.
+            gsd_m: metres per pixel; the map's own if not given.
 
         Raises:
             InputError: the map cannot be read, lies nowhere, or is too small or too large for such a grid.
@@ -192,7 +192,7 @@ class WorldMap:
             raise InputError(
                 "the map is too large to be laid on a grid",
                 value=f"{columns}x{rows} pixels of {gsd_m:g} m",
-                hint="cut the country that was flown over out of it",
+                hint="cut out the country that was flown over",
             )
         transform = rasterio.Affine(gsd_m, 0, west, 0, -gsd_m, north)
         picture, shown = self._pixels()

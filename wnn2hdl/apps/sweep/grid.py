@@ -12,7 +12,7 @@ import numpy as np
 from wnn2hdl.errors import InputError
 
 Cell = tuple[int, int]
-"""An architecture: n, the address bits of a RAM, and k, the RAMs of a discriminator."""
+"""An architecture: the address bits of a RAM, and the RAMs of a discriminator."""
 
 _NAME = re.compile(r"n([1-9]\d*)-k([1-9]\d*)-t(0|[1-9]\d*)")
 
@@ -23,8 +23,8 @@ class Trial:
 
     Attributes:
         name: unique in a sweep: ``n4-k16-t3``.
-        address_bits: n.
-        rams: k.
+        address_bits: of a RAM.
+        rams: of a discriminator.
         seed: of the tuple mapping.
         bits: pixel bits that are read, as in `BitSelect`.
         bleaching: the threshold; None chooses it by cross-validation by image.
@@ -47,7 +47,7 @@ class Recipe:
 
     Attributes:
         seed: of the whole sweep.
-        bits: as in `Trial`; likewise ``bleaching`` and ``care_minimum``.
+        bits: as in `Trial`, like ``bleaching`` and ``care_minimum``.
     """
 
     seed: int
@@ -127,7 +127,7 @@ def parse_name(name: str) -> tuple[Cell, int]:
 
 
 def grid(recipe: Recipe, address_bits: Iterable[int], rams: Iterable[int], trials: int) -> Plan:
-    """Every combination of n and k."""
+    """Every combination of address bits and RAMs."""
     return Plan(recipe, tuple(product(sorted(set(address_bits)), sorted(set(rams)))), trials)
 
 

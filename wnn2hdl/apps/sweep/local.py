@@ -12,7 +12,7 @@ from wnn2hdl.apps.sweep.trial import Record, run_trials
 from wnn2hdl.errors import ToolError
 
 BATCH = 10
-"""Trials a task: about half a second of work, so handing it over costs nothing and a kill loses little."""
+"""Trials per task: about half a second of work, so handing it over costs nothing and a kill loses little."""
 
 
 def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Record]]:
@@ -41,6 +41,6 @@ def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Recor
             hint="run the same command again: finished trials are kept",
         ) from error
     finally:
-        # That tasks are cancelled is no news to whoever stops taking results.
+        # Whoever stops taking results knows that tasks are cancelled.
         with warnings.catch_warnings(action="ignore", category=UserWarning):
             done.close()

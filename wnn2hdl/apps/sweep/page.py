@@ -13,7 +13,7 @@ from wnn2hdl.report.page import environment
 PAGE_FILE = "index.html"
 
 _CAPTIONS = {
-    "surface": "Mean accuracy over n and k.",
+    "surface": "Mean accuracy over address bits and RAMs.",
     "contour": "The same as a contour, finalists marked.",
     "cost": "Logarithm of the mean LUTs per pixel.",
     "finalists": "Accuracies of the finalists' valid trials.",

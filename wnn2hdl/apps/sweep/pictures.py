@@ -81,8 +81,8 @@ def _surface(figure: "Figure", surface: Surface) -> None:
         rstride=1,
         cstride=1,
     )
-    axes.set_xlabel("address bits n")
-    axes.set_ylabel("RAMs k")
+    axes.set_xlabel("address bits")
+    axes.set_ylabel("RAMs")
     axes.set_xticks(surface.address_bits[::2])
     axes.set_yticks(surface.rams[::3])
     axes.view_init(elev=32, azim=-128)
@@ -116,10 +116,10 @@ def _architecture_axes(axes: "Axes", surface: Surface, marked: Sequence[Cell]) -
             str(number), (k, n), ha="center", va="center", color="black", fontsize="small", zorder=4
         )
     if marked:
-        names = [f"{number}: n={n}, k={k}" for number, (n, k) in enumerate(marked, 1)]
-        axes.set_title("   ".join(names), fontsize="small", pad=10)
-    axes.set_xlabel("RAMs k")
-    axes.set_ylabel("address bits n")
+        names = [f"{number}: {bits}/{rams}" for number, (bits, rams) in enumerate(marked, 1)]
+        axes.set_title("address bits/RAMs   " + "   ".join(names), fontsize="small", pad=10)
+    axes.set_xlabel("RAMs")
+    axes.set_ylabel("address bits")
     axes.set_xticks(surface.rams)
     axes.set_yticks(surface.address_bits)
 

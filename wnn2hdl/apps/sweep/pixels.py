@@ -13,7 +13,7 @@ from wnn2hdl.ir import COLOURS, MAX_TABLE_INPUTS, BitSelect
 from wnn2hdl.progress import Progress, reported
 
 TRAINING_PIXELS = 20_000
-"""Pixels drawn for training unless told otherwise."""
+"""Pixels drawn for training by default."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def draw(dataset: Dataset, *, pixels: int, seed: int, progress: Progress) -> Pix
         dataset: at least two images.
         pixels: how many training pixels to draw; all there are if there are fewer.
         seed: of the draw.
-        progress: told of each image read.
+        progress: called with each image read.
 
     Raises:
         InputError: fewer than two images, one that cannot be read, or a class that is missing on a side.

@@ -53,18 +53,18 @@ def search(
     run: Runner,
     progress: Progress,
 ) -> None:
-    """NSGA-II over n, k, the pixel bits and the care threshold, for circuit accuracy and LUTs.
+    """NSGA-II over address bits, RAMs, pixel bits and the care threshold, for circuit accuracy and LUTs.
 
     Generations depend on the seed and on the outcomes before them only, so a search that was interrupted goes
-    on as if it had not been: known outcomes are told again, not computed.
+    on as if it had not been: known outcomes are reported to it again, not computed.
 
     Args:
         sets: the pixels.
         recipe: seed and bleaching; in exact mode no care threshold is searched.
-        cells: lowest and highest n, lowest and highest k.
+        cells: lowest and highest number of address bits, and of RAMs.
         results: filled up to its size.
         run: where trials run.
-        progress: told of each generation.
+        progress: called with each generation.
 
     Raises:
         ExtraMissingError: Optuna is not installed.

@@ -25,11 +25,11 @@ class Surface:
     """Means over the valid trials of each architecture; NaN where there is none.
 
     Attributes:
-        address_bits: n of each row.
-        rams: k of each column.
+        address_bits: of each row.
+        rams: of each column.
         accuracy: float64 ``[rows, columns]``, of the classifiers on the held-out pixels.
         luts: float64 ``[rows, columns]``, per pixel.
-        valid: int64 ``[rows, columns]``, valid trials; likewise ``saturated`` and ``failed``.
+        valid: int64 ``[rows, columns]``, valid trials, as ``saturated`` and ``failed`` count theirs.
     """
 
     address_bits: tuple[int, ...]
@@ -65,7 +65,8 @@ def surface(plan: Plan, records: Iterable[Record]) -> Surface:
 def peaks(found: Surface) -> tuple[Cell, ...]:
     """Architectures that none of their eight neighbours beats in mean accuracy, the most accurate first.
 
-    One most of whose trials saturate is no peak: what is left of it is a selection of lucky mappings.
+    An architecture is not a peak if most of its trials are saturated: what is left is a selection of lucky
+    mappings.
     """
     trusted = 2 * found.valid >= found.valid + found.saturated + found.failed
     heights = np.where(trusted & (found.valid > 0), found.accuracy, -np.inf)
@@ -99,7 +100,7 @@ def pareto_front(records: Iterable[Record]) -> tuple[Record, ...]:
 def hypervolume(front: Sequence[Record], luts: int) -> float:
     """The area that a front dominates, accuracy times log2(1 + LUTs), up to the number ``luts``.
 
-    Accuracy counts from 0.5, a coin's toss, so that the area tells fronts apart.
+    Accuracy counts from 0.5, a coin's toss, so that the area distinguishes fronts.
     """
     inside = [record for record in front if record.luts is not None and record.luts <= luts]
     edges = [math.log2(1 + (record.luts or 0)) for record in inside] + [math.log2(1 + luts)]
@@ -114,7 +115,7 @@ class Finalist:
     """An architecture tried often.
 
     Attributes:
-        cell: n and k.
+        cell: address bits and RAMs.
         accuracies: of the valid trials, by mapping seed.
         luts: of the same trials.
         saturated: how many were left out.
@@ -198,21 +199,19 @@ def _reasons(
         for (one, other), (comparison, p_value) in comparisons.items()
         if one == best.cell and p_value < LEVEL
     ]
-    text = (
-        f"{label(best.cell)} has the highest mean over {len(best.accuracies)} valid trials ({figures(best)})"
-    )
-    text += f" and is significantly more accurate than {', '.join(beaten)}." if beaten else "."
+    text = f"{label(best.cell)}: the highest mean over {len(best.accuracies)} valid trials ({figures(best)})"
+    text += f", significantly more accurate than {'; '.join(beaten)}." if beaten else "."
     others = [label(finalist.cell) for finalist in equals[1:]]
     if others:
-        text += f" It is not shown to differ from {', '.join(others)}."
+        text += f" Not shown to differ from it: {'; '.join(others)}."
     if chosen is not best:
-        text += f" Of these {label(chosen.cell)} takes the fewest LUTs ({figures(chosen)})."
+        text += f" The fewest LUTs of these: {label(chosen.cell)} ({figures(chosen)})."
     return f"{text} Chosen: {label(chosen.cell)}."
 
 
 def label(cell: Cell) -> str:
-    """``n = 4, k = 16``."""
-    return f"n = {cell[0]}, k = {cell[1]}"
+    """``4 address bits, 16 RAMs``."""
+    return f"{cell[0]} address bits, {cell[1]} RAMs"
 
 
 def _accuracy(record: Record) -> float:

@@ -27,7 +27,8 @@ class Comparison:
         effect: rank-biserial correlation, -1 to 1: of the signed ranks, or of all pairs, the share in favour
             of the first minus the share in favour of the second (Kerby 2014).
         difference: mean of the first minus mean of the second.
-        low: lower end of the bootstrap interval of the difference; likewise ``high`` the upper end.
+        low: lower end of the bootstrap interval of the difference.
+        high: upper end of the same interval.
     """
 
     test: str

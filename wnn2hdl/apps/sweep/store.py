@@ -1,4 +1,4 @@
-"""Results on disk: a record a trial, appended as they come, so that a killed sweep loses nothing."""
+"""Results on disk: one record per trial, appended as they come, so that a killed sweep loses nothing."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -17,8 +17,8 @@ from wnn2hdl.spreadsheet import csv_lines
 class Results:
     """The results of planned trials in a journal.
 
-    They may come in any order, since trials end in any order; reading gives them in the plan's. Held in
-    memory are eight bytes a planned trial, not the results.
+    They may come in any order, since trials end in any order; reading gives them in the plan's. Eight
+    bytes per planned trial are held in memory, not the results.
 
     Args:
         path: the journal's file.

@@ -93,17 +93,17 @@ def run_sweep(
     finalist_trials: int = FINALIST_TRIALS,
     search: bool = False,
 ) -> Outcome:
-    """Run what is missing of a sweep and write its tables and its summary.
+    """Run the missing part of a sweep and write its tables and its summary.
 
-    A folder belongs to one choice of pixels, seed and recipe; the ranges of n, k and trials may grow, and
-    what is there is used again.
+    A folder belongs to one choice of pixels, seed and recipe; the ranges of address bits, RAMs and trials may
+    grow, and what is there is used again.
 
     Args:
         sets: the pixels.
         plan: the grid.
         folder: made if it does not exist.
         run: where trials run.
-        progress: told of trials that get done.
+        progress: called with the trials that are done.
         finalist_trials: of each finalist.
         search: also search beyond the grid, with as many trials.
 
@@ -176,7 +176,7 @@ def find_trial(plan: Plan, folder: Path, name: str) -> Trial:
     """
     if searching.position(name) is None:
         return plan.recipe.trial(*parse_name(name))
-    absent = InputError("no such trial", value=repr(name), hint="run the sweep with --search first")
+    absent = InputError("no such trial", value=repr(name), hint="run the sweep with --beyond-grid first")
     if not (folder / IDENTITY_FILE).exists():
         raise absent
     with search_results(plan, folder) as results:
@@ -241,9 +241,9 @@ def _check_identity(sets: PixelSets, recipe: Recipe, path: Path) -> None:
     different = _differences(identity, path)
     if different:
         raise InputError(
-            f"the folder holds a sweep with another {' and '.join(different)}",
+            f"the folder holds a sweep with a different {' and '.join(different)}",
             value=path.parent,
-            hint="choose another folder, or the same images and options to go on",
+            hint="choose another folder, or give the same images and options to continue",
         )
     if not path.exists():
         write_json(path, identity)
@@ -277,7 +277,7 @@ def _ranges(plan: Plan) -> tuple[tuple[int, int], tuple[int, int]]:
 
 def _cell_json(found: Surface, cell: tuple[int, int]) -> dict[str, Any]:
     accuracy, luts = found.at(cell)
-    return {"n": cell[0], "k": cell[1], "accuracy": accuracy, "luts": luts}
+    return {"address_bits": cell[0], "rams": cell[1], "accuracy": accuracy, "luts": luts}
 
 
 def _decision_json(decision: Decision | None) -> dict[str, Any]:
@@ -286,8 +286,8 @@ def _decision_json(decision: Decision | None) -> dict[str, Any]:
     return {
         "finalists": [
             {
-                "n": finalist.cell[0],
-                "k": finalist.cell[1],
+                "address_bits": finalist.cell[0],
+                "rams": finalist.cell[1],
                 "valid": len(finalist.accuracies),
                 "saturated": finalist.saturated,
                 "accuracy": finalist.accuracy,

@@ -31,7 +31,7 @@ class Record:
     """The outcome of a trial: a row of the results.
 
     Attributes:
-        name: as in `Trial`; likewise ``address_bits``, ``rams``, ``seed``, ``bits`` and ``care_minimum``.
+        name: as in `Trial`, like ``address_bits``, ``rams``, ``seed``, ``bits`` and ``care_minimum``.
         status: ``saturated`` trials are left out of any selection; a ``failed`` one has only an ``error``.
         bleaching: the threshold used.
         saturation: share of the addresses that fire, in the discriminator where it is highest.
@@ -83,12 +83,12 @@ def run_trial(sets: PixelSets, trial: Trial) -> Record:
     """Run a trial; whatever goes wrong in it becomes part of its record."""
     try:
         return _run(sets, trial)
-    except Exception as error:  # a sweep of thousands outlives a defect that one trial meets
+    except Exception as error:  # a defect that one trial meets must not end a sweep of thousands
         return failed(trial, error)
 
 
 def failed(trial: Trial, error: BaseException) -> Record:
-    """The record of a trial that did not come to its end."""
+    """The record of a trial that failed."""
     text = error.line() if isinstance(error, Wnn2hdlError) else f"{type(error).__name__}: {error}"
     return Record(
         trial.name,
@@ -199,7 +199,7 @@ class _Circuit:
 
 @functools.lru_cache(maxsize=_KEPT_TABLES)
 def _mapped(inputs: tuple[str, ...], outputs: tuple[str, ...], care: bytes, values: bytes) -> _Circuit:
-    """The circuit of a table, its flags packed eight to a byte; equal tables are mapped once a process."""
+    """The circuit of a table, its flags packed eight to a byte; equal tables are mapped once per process."""
     size = 1 << len(inputs)
     flags = np.unpackbits(np.frombuffer(values, np.uint8), count=size * len(outputs)).astype(np.bool_)
     table = TruthTable(

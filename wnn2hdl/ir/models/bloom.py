@@ -67,7 +67,7 @@ class BloomWisardModel(ClassifierModel):
                 f"a filter has a power of two of entries up to 2**{MAX_ENTRY_BITS}, not {entries}"
             )
         if self.hashes.max() >= entries:
-            raise ValueError(f"hash constant {self.hashes.max()} is no index of {entries} entries")
+            raise ValueError(f"hash constant {self.hashes.max()} is not an index of {entries} entries")
 
     @property
     def ties(self) -> FirstOrLast:

@@ -40,7 +40,7 @@ class LogicModel(Model):
     def __post_init__(self) -> None:
         for names in (self.inputs, self.outputs):
             if not names or len(set(names)) != len(names):
-                raise ValueError("a network needs inputs and outputs, each with a name of its own")
+                raise ValueError("a network needs inputs and outputs, each with its own name")
         if self.gates.ndim != 2 or self.gates.shape[1] != 2:
             raise ValueError(f"the gates have shape {self.gates.shape}; it must be [gates, 2]")
         if self.literals.shape != (len(self.outputs),):
@@ -51,7 +51,7 @@ class LogicModel(Model):
         if (self.gates >> 1 >= own[:, np.newaxis]).any():
             raise ValueError("a gate reads itself or a gate after it")
         if (self.literals >> 1).max() > self.width + len(self.gates):
-            raise ValueError(f"an output is variable {(self.literals >> 1).max()}, which there is not")
+            raise ValueError(f"an output is variable {(self.literals >> 1).max()}, which does not exist")
 
     @property
     def width(self) -> int:

@@ -88,7 +88,7 @@ class LutGroupModel(ClassifierModel):
         if self.groups.shape != (self.layers[-1].nodes,):
             raise ValueError(f"{len(self.groups)} nodes vote; the last layer has {self.layers[-1].nodes}")
         if self.groups.min() < 0 or self.groups.max() >= len(self.classes):
-            raise ValueError("a node votes for a class that there is not")
+            raise ValueError("a node votes for a class that does not exist")
 
     @property
     def ties(self) -> FirstOrLast:

@@ -48,7 +48,7 @@ class SumLayer:
         if not self.sources.shape == self.targets.shape == (len(self.values),):
             raise ValueError("every edge needs a source, a target and values")
         if self.targets.size and not 0 <= self.targets.min() <= self.targets.max() < self.nodes:
-            raise ValueError(f"an edge ends at a node that there is not; there are {self.nodes}")
+            raise ValueError(f"an edge ends at a node that does not exist; there are {self.nodes}")
         if self.sources.min(initial=0) < 0:
             raise ValueError("an edge reads a word before the first")
         if (np.diff(self.targets) < 0).any():
@@ -85,7 +85,7 @@ class TableSumModel(ClassifierModel):
     Attributes:
         encoder: what turns features into the input bits; the first layer takes ``layers[0].input_bits`` of
             them as a word, the first the least significant.
-        classes: class names, one a node of the last layer.
+        classes: class names, one per node of the last layer.
         layers: the first reads words of the input bits, each later one the nodes of the one before.
         origin: where the model comes from.
     """
@@ -104,7 +104,7 @@ class TableSumModel(ClassifierModel):
         if bits and self.width % bits == 0:
             words = self.width // bits
         if not words:
-            raise ValueError(f"{self.width} input bits make no words of {bits} bits")
+            raise ValueError(f"{self.width} input bits do not make words of {bits} bits")
         for layer in self.layers:
             if layer.input_bits != bits:
                 raise ValueError(

@@ -43,7 +43,7 @@ class Dynamic:
 
 @dataclass(frozen=True, eq=False)
 class SparseWisardModel(ClassifierModel):
-    """A WiSARD with one discriminator a class, each of ``k`` RAMs with ``n`` address bits, at most 64.
+    """A WiSARD with one discriminator per class, each of ``k`` RAMs with ``n`` address bits, at most 64.
 
     A RAM fires if the count at its address reaches the bleaching threshold; a discriminator's response is how
     many of its RAMs fire. An address that a RAM does not store has a count of 0 and never fires; that is also

@@ -15,7 +15,7 @@ from wnn2hdl.ir import LUT_INPUTS, bits_to_codes, codes_to_bits
 from wnn2hdl.training.bitselect.single import best_subset
 
 SHORTLIST = 15
-"""Bits that take part in the search for a cascade: the best so many together, by `best_subset`."""
+"""Bits that take part in the search for a cascade: the best ones together, by `best_subset`."""
 
 STARTS = 6
 """Random choices of bits from which exchanges start."""
@@ -65,7 +65,8 @@ class _Split:
 
     Attributes:
         score: mass that is right less mass that is wrong.
-        a: the bits of A, ascending; likewise ``b``.
+        a: the bits of A, ascending.
+        b: the bits of B, ascending.
         label: int64 ``[2**len(a)]``.
         f: bool ``[labels, 2**len(b)]``.
     """
@@ -80,7 +81,7 @@ class _Split:
 def find_cascade(
     mass: NDArray[np.int64], luts: int, seed: int, progress: Callable[[int, int], None] | None = None
 ) -> Cascade:
-    """The cascade of so many LUTs with the most mass right, as far as the search finds it.
+    """The cascade of ``luts`` LUTs with the most mass right, as far as the search finds it.
 
     Args:
         mass: signed mass, int64 ``[2**width]``; sums of magnitudes are below 2**53.
@@ -113,8 +114,8 @@ class _Search:
 
     def __init__(self, mass: NDArray[np.int64], labels: int, free: int, rng: np.random.Generator) -> None:
         self.width = len(mass).bit_length() - 1
-        # One axis a bit, the highest first. The numbers are whole and below 2**53, so floating-point sums are
-        # exact, and BLAS does the work.
+        # One axis per bit, the highest first. The numbers are whole and below 2**53, so floating-point sums
+        # are exact, and BLAS does the work.
         self.mass = mass.astype(np.float64).reshape((2,) * self.width)
         self.labels = labels
         self.free = free
@@ -165,7 +166,7 @@ class _Search:
             label = (np.sign(sums) @ chart).argmax(axis=1)
 
     def _chart(self, a: tuple[int, ...], b: tuple[int, ...]) -> NDArray[np.float64]:
-        """The mass by B and A, the idle bits summed over; one axis a bit, from the highest of B down."""
+        """The mass by B and A, the idle bits summed over; one axis per bit, from the highest of B down."""
         kept = sorted(a + b, reverse=True)
         idle = tuple(self.width - 1 - x for x in range(self.width) if x not in kept)
         order = [kept.index(x) for x in (*reversed(b), *reversed(a))]

@@ -21,7 +21,7 @@ Chosen by four cross-validations over 30 Sentinel-2 scenes (one LUT: 92.4 % at 1
 """
 
 LEAST_SHARE = 0.01
-"""An image with a smaller share of background pixels tells nothing reliable of the background's colour."""
+"""An image with a smaller share of background pixels says nothing reliable about the background's colour."""
 
 
 @dataclass(frozen=True, eq=False)

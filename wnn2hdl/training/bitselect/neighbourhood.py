@@ -38,7 +38,7 @@ COPIES = 3
 """How often each window is used, each time with another drift."""
 
 ROUNDS = 2
-"""How often each table is chosen anew."""
+"""How often each table is chosen again."""
 
 CUBE_STEP = 8
 
@@ -78,7 +78,7 @@ def select_neighbourhood(
         progress: called with (tables chosen, tables in all).
 
     Returns:
-        a model whose encoder is a `Neighbourhood`, with one RAM a class that reads all taps; `LUTS` LUTs.
+        a model whose encoder is a `Neighbourhood`, with one RAM per class that reads all taps; `LUTS` LUTs.
 
     Raises:
         InputError: not two classes, another size, or a class without windows.
@@ -113,7 +113,7 @@ def select_neighbourhood(
 def _check(windows: NDArray[np.uint8], labels: NDArray[np.uint8], classes: tuple[str, ...]) -> None:
     if len(classes) != 2:
         raise InputError(
-            "neighbourhoods tell two classes apart",
+            "a neighbourhood separates two classes",
             value=", ".join(classes),
             hint="train discriminators for more, or merge classes",
         )

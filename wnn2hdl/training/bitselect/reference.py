@@ -11,7 +11,7 @@ INVERSE_RIDGE = 1e4
 """Inverse strength of the ridge penalty for weights that sum to 1: next to none, yet never singular."""
 
 DARKEST = 4.0
-"""Added to the levels of mean colours, so that their logarithms do not tell black from nearly black."""
+"""Added to the levels of mean colours, so that their logarithms do not separate black from nearly black."""
 
 Probability = Callable[[NDArray[np.int64]], NDArray[np.float64]]
 

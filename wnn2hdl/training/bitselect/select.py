@@ -46,21 +46,21 @@ def select_bits(
         progress: called with (starts done, starts in all); not for one LUT, which takes no time.
 
     Returns:
-        a model of one RAM a class that reads every chosen bit (see `look_up_table`); its `training` names the
-        bits that each LUT of the cascade reads.
+        a model of one RAM per class that reads every chosen bit (see `look_up_table`); its `training` names
+        the bits that each LUT of the cascade reads.
 
     Raises:
         InputError: not two classes, another number of LUTs, or a class without pixels.
     """
     if len(classes) != 2:
         raise InputError(
-            "bit selection tells two classes apart",
+            "bit selection separates two classes",
             value=", ".join(classes),
             hint="train discriminators for more, or merge classes",
         )
     if not 1 <= luts <= MOST_LUTS:
         raise InputError(
-            "bit selection makes classifiers of 1 to 3 LUTs a pixel",
+            "bit selection makes classifiers of 1 to 3 LUTs per pixel",
             value=luts,
             hint=f"ask for 1 to {MOST_LUTS}",
         )
@@ -82,13 +82,13 @@ def select_bits(
 def look_up_table(
     encoder: Encoder, classes: tuple[str, ...], answers: NDArray[np.int64], training: dict[str, Any]
 ) -> WisardModel:
-    """A model of one RAM a class, of which exactly one fires for each code.
+    """A model of one RAM per class, of which exactly one fires for each code.
 
     Args:
         encoder: the bits that are read.
         classes: class names.
         answers: int64 ``[2**encoder.width]``, the class index of each code.
-        training: what to note in the model.
+        training: what to record in the model.
     """
     counts = (answers == np.arange(len(classes))[:, np.newaxis]).astype(np.int64)
     mapping = np.arange(encoder.width, dtype=np.int64).reshape(1, 1, -1)

@@ -102,5 +102,5 @@ def test_memory_holds_one_row_of_windows(
         write_classes(task, task.open(), kept, counting(), output, PALETTE, lambda *_: None)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    # The whole picture is 3 MB, and a neighbourhood takes 200 bytes a pixel of a window.
+    # The whole picture is 3 MB, and a neighbourhood takes 200 bytes per pixel of a window.
     assert peak < 2e6

@@ -50,7 +50,7 @@ def scan(model_file: Path) -> Scan:
 
 
 def save_scene(path: Path, pixels: NDArray[np.unsignedinteger[Any]], east: float = 400_000) -> Path:
-    """A GeoTIFF of 100 m a pixel on the central meridian's side of a UTM zone."""
+    """A GeoTIFF of 100 m per pixel on the central meridian's side of a UTM zone."""
     place = {"crs": "EPSG:32720", "transform": rasterio.Affine(100, 0, east, 0, -100, 9_100_000)}
     size = {"height": pixels.shape[0], "width": pixels.shape[1], "count": 3, "dtype": pixels.dtype.name}
     with rasterio.open(path, "w", driver="GTiff", photometric="rgb", **size, **place) as target:
@@ -139,7 +139,7 @@ def test_clouds_are_left_out(
     clouds = np.zeros(pixels.shape[:2], dtype=np.uint8)
     clouds[:75] = 1
     write_png(tmp_path / "clouds.png", clouds)
-    options = ScanOptions(Reading(mask=tmp_path / "clouds.png"), Method(square=20))
+    options = ScanOptions(Reading(exclude=tmp_path / "clouds.png"), Method(square=20))
     summary = scan(picture_file, tmp_path / "out", options=options)
     found = classes(tmp_path / "out")
     assert (found[:75] == NODATA).all()
@@ -147,7 +147,7 @@ def test_clouds_are_left_out(
     assert summary["classified_pixels"] == found[75:].size
     write_png(tmp_path / "clouds.png", np.ones_like(clouds))
     summary = scan(picture_file, tmp_path / "out", options=options)
-    assert summary["warnings"] == ["no pixel is valid: nothing was classified"]
+    assert summary["warnings"] == ["no pixel is valid, so nothing was classified"]
     assert summary["deforested"]["share"] is None
 
 
@@ -312,7 +312,7 @@ def test_the_earlier_date_has_clouds_of_its_own(
     write_png(tmp_path / "clouds.png", clouds)
     before, after = (save_scene(tmp_path / name, pixels) for name in ("before.tif", "after.tif"))
     summary = scan(
-        after, tmp_path / "out", before=before, before_reading=Reading(mask=tmp_path / "clouds.png")
+        after, tmp_path / "out", before=before, before_reading=Reading(exclude=tmp_path / "clouds.png")
     )
     assert summary["classified_pixels"] == clouds.size
     assert summary["change"]["compared_pixels"] == clouds.size - clouds.sum()
@@ -338,15 +338,15 @@ def test_a_folder_is_one_step_that_never_falls_back(model_file: Path, tmp_path: 
     (tmp_path / "chips").mkdir()
     for name, height in (("a", 40), ("b", 9000), ("c", 40)):
         write_png(tmp_path / "chips" / f"{name}.png", np.zeros((height, 900, 3), dtype=np.uint8))
-    told: list[tuple[str, int, int]] = []
+    reported: list[tuple[str, int, int]] = []
     run = partial(run_locally, 1)
-    scanner = Scanner.open(model_file, ScanOptions(), run, lambda *step: told.append(step))
+    scanner = Scanner.open(model_file, ScanOptions(), run, lambda *step: reported.append(step))
     scanner.scan(tmp_path / "chips", tmp_path / "out")
-    assert {step for step, _, _ in told} == {"scanning pictures"}
-    done = [share for _, share, _ in told]
+    assert {step for step, _, _ in reported} == {"scanning pictures"}
+    done = [share for _, share, _ in reported]
     assert done == sorted(done)
-    assert {total for _, _, total in told} == {done[-1]}
-    assert any(1000 < share < 2000 for share in done), "a large picture's windows are told of"
+    assert {total for _, _, total in reported} == {done[-1]}
+    assert any(1000 < share < 2000 for share in done), "a large picture's windows are reported"
 
 
 def test_a_damaged_picture_does_not_keep_others_of_a_folder_from_being_scanned(
@@ -389,7 +389,7 @@ def test_dates_that_are_calibrated_otherwise_are_refused_or_scaled_each_by_itsel
 ) -> None:
     before = levels(tmp_path / "before.tif", pixels, 0, 1.0, 0.0)
     after = levels(tmp_path / "after.tif", pixels, 1000, 1.0, -0.1)
-    with pytest.raises(InputError, match=r"offset 0, .* offset -0\.1, .*say --scale .* --before-scale"):
+    with pytest.raises(InputError, match=r"offset 0, .* offset -0\.1, .*give --scale .* --before-scale"):
         scan(after, tmp_path / "out", options=ScanOptions(Reading(scale=(0, 3072))), before=before)
     assert not (tmp_path / "out").exists()
     options = ScanOptions(Reading(scale=(1000, 4072)))

@@ -21,10 +21,10 @@ from wnn2hdl.samples.flight import make_flight
 
 @dataclass
 class Flying:
-    """Seven frames, of which four calibrate a camera whose tilt nobody told.
+    """Seven frames, of which four calibrate a camera whose tilt is not known.
 
     Attributes:
-        steps: what progress was told.
+        steps: the progress that was reported.
         threads: that OpenCV may use, whenever a frame is read.
     """
 
@@ -38,7 +38,7 @@ class Flying:
         known: Learned | None = None,
         keys: Collection[str] = METHODS,
     ) -> FlightRun:
-        """Locate them by some methods; logged positions of those that are scored are so many degrees aside.
+        """Locate them by some methods; logged positions of those that are scored are this many degrees aside.
 
         What is known already is not calibrated.
         """

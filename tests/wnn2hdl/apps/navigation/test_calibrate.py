@@ -21,7 +21,7 @@ FIT = Fit(3, 2.5, 2.0, 0.7)
 
 
 def country(side: int = 250, seed: int = 0) -> MapGrid:
-    """A map of smooth blobs, two metres a pixel."""
+    """A map of smooth blobs, two metres per pixel."""
     noise = np.random.default_rng(seed).normal(size=(side, side)).astype(np.float32)
     blobs = cv2.GaussianBlur(noise, (0, 0), 2)
     picture = np.clip(128 + 40 * blobs / blobs.std(), 1, 254).astype(np.uint8)
@@ -142,7 +142,7 @@ def test_a_frame_has_the_camera_of_its_stretch_or_of_either_beside_it() -> None:
     assert found.cameras_at("IMG_100.jpg") == (late,)
     assert found.cameras_at("IMG_101.jpg") == (late,)
     for name in ("DJI_013.jpg", "last.jpg"):
-        assert found.cameras_at(name) == (early, late), "where it lies is not told"
+        assert found.cameras_at(name) == (early, late), "where it lies is not known"
 
 
 def test_a_frame_of_the_calibration_has_its_own_camera_whatever_its_name() -> None:

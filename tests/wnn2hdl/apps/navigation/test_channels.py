@@ -123,7 +123,7 @@ def test_a_template_may_reach_beyond_the_map_as_far_as_the_overlap_allows() -> N
     ],
 )
 def test_what_is_no_stack_of_binary_images_is_refused(channels: np.ndarray, inside: np.ndarray) -> None:
-    with pytest.raises(InputError, match="no binary images"):
+    with pytest.raises(InputError, match="not binary images"):
         ChannelIndex(channels, inside)
 
 

@@ -1,4 +1,4 @@
-"""Logs of a generated flight in others' conventions, told by their numbers alone."""
+"""Logs of a generated flight in others' conventions, recognised by their numbers alone."""
 
 import math
 from collections.abc import Callable

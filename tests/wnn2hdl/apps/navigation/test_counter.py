@@ -1,4 +1,4 @@
-"""The order of flight by the numbers of frames, also where a camera's counter starts anew."""
+"""The order of flight by the numbers of frames, also where a camera's counter starts again."""
 
 from itertools import pairwise
 

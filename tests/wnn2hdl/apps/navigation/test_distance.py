@@ -30,7 +30,7 @@ def test_keeps_its_digits_at_short_distances() -> None:
     [(0, 100.56, 99.89), (24, 100.39, 99.83), (41, 100.13, 99.74), (60, 99.81, 99.64)],
 )
 def test_how_much_the_two_differ(latitude: float, north: float, east: float) -> None:
-    """As the module's text tells, for 100 m on the ellipsoid."""
+    """As the module's text says, for 100 m on the ellipsoid."""
     for turn, figure in ((np.array([1.0, 0.0]), north), (np.array([0.0, 1.0]), east)):
         there = np.array([latitude, 10.0]) + turn * 1e-3
         ratio = great_circle_m(latitude, 10, *there) / geodesic_m(latitude, 10, *there)

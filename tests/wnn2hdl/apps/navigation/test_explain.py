@@ -1,4 +1,4 @@
-"""Which convention a log is in, told by frames of a generated flight that calibrate."""
+"""Which convention a log is in, found by frames of a generated flight that calibrate."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -34,19 +34,19 @@ def explained() -> Explained:
     given = Camera.of_focal(flight.camera.focal_px, 260, 150)
 
     def check(log: Log = lambda pose: pose, camera: Camera = given) -> list[tuple[str, int, int]]:
-        told: list[tuple[str, int, int]] = []
+        reported: list[tuple[str, int, int]] = []
         lookout = Lookout(grid, index, frames, [log(pose) for pose in poses_of(flight)], lambda: None)
-        require_stated_meaning(lookout, camera, lambda *step: told.append(step))
-        return told
+        require_stated_meaning(lookout, camera, lambda *step: reported.append(step))
+        return reported
 
     return check
 
 
 def test_a_good_log_is_taken_with_progress(explained: Explained) -> None:
-    told = explained()
-    done = [step[1] for step in told]
+    reported = explained()
+    done = [step[1] for step in reported]
     assert done == sorted(done)
-    assert told[-1][1] == told[-1][2]
+    assert reported[-1][1] == reported[-1][2]
 
 
 @pytest.mark.parametrize(

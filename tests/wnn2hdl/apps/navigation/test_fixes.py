@@ -20,7 +20,7 @@ def pose(east: float, north: float, number: int = 0) -> Pose:
 
 
 def located(*places: tuple[float, float], heights: tuple[float, ...]) -> Located:
-    """Peaks at metres east and north, so many standard deviations above the mean."""
+    """Peaks at metres east and north, these standard deviations above the mean."""
     peaks = (
         Peak(round(-north), round(east), height)
         for (east, north), height in zip(places, heights, strict=True)

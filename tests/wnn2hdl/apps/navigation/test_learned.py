@@ -47,7 +47,7 @@ def test_the_same_conditions_are_accepted(learned: Learned) -> None:
     [
         ({"map": "0" * 64}, "the calibration belongs to another map"),
         ({"tolerance": PoseTolerance(6.0)}, "--heading-tolerance was 0.0, and now is 6.0"),
-        ({"tolerance": PoseTolerance(0.0, 0.08)}, "--scale-tolerance was 0.0, and now is 8.0"),
+        ({"tolerance": PoseTolerance(0.0, 0.08)}, "--height-tolerance was 0.0, and now is 8.0"),
     ],
 )
 def test_other_conditions_are_refused(learned: Learned, change: dict[str, Any], fault: str) -> None:
@@ -62,7 +62,7 @@ def test_another_camera_window_or_method_is_refused(learned: Learned) -> None:
     with pytest.raises(InputError, match=r"--window was 40\.0, and now is 95\.0"):
         learned.require(learned.conditions, {"window": 95.0}, METHODS)
     known = replace(learned, windows={"map": None})
-    with pytest.raises(InputError, match="no thresholds for such a search: window"):
+    with pytest.raises(InputError, match="no thresholds for this search: window"):
         known.require(learned.conditions, {"window": 40.0}, METHODS)
     some = {place: one for place, one in learned.acceptances.items() if place[1] != "grey"}
     with pytest.raises(InputError, match="no threshold for a method: grey"):

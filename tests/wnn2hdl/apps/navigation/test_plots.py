@@ -1,4 +1,4 @@
-"""Pictures of a flight: not empty, equal for equal results, and in colours that can be told apart."""
+"""Pictures of a flight: not empty, equal for equal results, and in colours that can be distinguished."""
 
 from dataclasses import replace
 from pathlib import Path

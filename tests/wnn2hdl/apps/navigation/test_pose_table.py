@@ -89,7 +89,7 @@ def test_files_that_are_no_csv_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot read the poses"):
         list(read_rows(tmp_path / "none.csv"))
     for content in (f"{HEAD}\n{LINE}\n".encode("utf-16"), "L\xe4ngs".encode("latin-1"), b'"a'):
-        with pytest.raises(InputError, match="the poses are no CSV"):
+        with pytest.raises(InputError, match="the poses are not CSV"):
             rows(tmp_path, content)
 
 
@@ -111,6 +111,6 @@ def test_numbers_are_digits_and_a_point(text: str) -> None:
     ],
 )
 def test_other_ways_to_write_numbers_are_refused(text: str, hint: str) -> None:
-    with pytest.raises(InputError, match="line 2: yaw_deg is no number") as caught:
+    with pytest.raises(InputError, match="line 2: yaw_deg is not a number") as caught:
         number(text, "yaw_deg", "line 2")
     assert hint in caught.value.hint

@@ -35,8 +35,8 @@ def test_a_tilt_shows_as_a_distance_ahead() -> None:
 
 
 def test_steps_are_counted_and_never_beyond_their_number() -> None:
-    told: list[tuple[str, int, int]] = []
-    done = steps(lambda *step: told.append(step), "calibration", 2)
+    reported: list[tuple[str, int, int]] = []
+    done = steps(lambda *step: reported.append(step), "calibration", 2)
     for _ in range(3):
         done()
-    assert told == [("calibration", count, 2) for count in (0, 1, 2, 2)]
+    assert reported == [("calibration", count, 2) for count in (0, 1, 2, 2)]

@@ -13,7 +13,7 @@ AREA = 1500.0**2
 
 
 def flight(seed: int, frames: int = 60) -> NDArray[np.float64]:
-    """A path of 40 m a step that turns slowly, and once at a right angle; metres ``[frames, 2]``."""
+    """A path of 40 m per step that turns slowly, and once at a right angle; metres ``[frames, 2]``."""
     rng = np.random.default_rng(seed)
     heading = np.cumsum(rng.normal(0, 0.06, frames)) + np.pi / 2 * (np.arange(frames) > frames // 2)
     return np.cumsum(40 * np.stack([np.cos(heading), np.sin(heading)], axis=1), axis=0)

@@ -73,7 +73,7 @@ def test_the_threshold_covers_the_same_ground_at_any_sample_distance() -> None:
 
 
 def country(seed: int) -> NDArray[np.uint8]:
-    """Fields and roofs: blots of two sizes, each of its own colour."""
+    """Fields and roofs: blots of two sizes, each in its own colour."""
     rng = np.random.default_rng(seed)
     picture = np.empty((160, 160, 3))
     for band in range(3):

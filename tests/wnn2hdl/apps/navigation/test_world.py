@@ -17,7 +17,7 @@ from wnn2hdl.raster import Reading
 
 LATITUDE, LONGITUDE = 24.26, 120.72
 DEGREES = Affine(4.93e-6, 4.0e-8, LONGITUDE, 2.0e-8, -4.51e-6, LATITUDE)
-"""About 0.5 m a pixel, turned by half a degree."""
+"""About 0.5 m per pixel, turned by half a degree."""
 METRES = Affine(0.5, 0, 268_600, 0, -0.5, 2_684_800)
 """In UTM zone 51 north."""
 
@@ -138,9 +138,9 @@ def test_bands_and_values_that_the_file_does_not_tell_are_named_by_the_user(tmp_
     path = written(tmp_path / "four.tif", four.astype(np.uint16) * 10, photometric="minisblack", **PLACE)
     with pytest.raises(InputError, match="which of its 4 bands"):
         WorldMap.read(path)
-    told = WorldMap.read(path, Reading(bands=(3, 2, 1), scale=(0, 2550)))
+    chosen = WorldMap.read(path, Reading(bands=(3, 2, 1), scale=(0, 2550)))
     straight = WorldMap.read(written(tmp_path / "rgb.tif", coloured(), photometric="rgb", **PLACE))
-    assert (told.resampled().image == straight.resampled().image).all()
+    assert (chosen.resampled().image == straight.resampled().image).all()
 
 
 def test_indices_of_a_colour_table_become_its_colours(tmp_path: Path) -> None:
@@ -163,7 +163,7 @@ def test_a_damaged_map_is_refused(tmp_path: Path) -> None:
     ("transform", "crs", "fault"),
     [
         (Affine(0.5, 0, 268_600, 0.5, 0, 2_684_800), "EPSG:32651", "no size on the ground"),
-        (METRES, 'LOCAL_CS["site",UNIT["metre",1]]', "coordinate system tells no latitudes"),
+        (METRES, 'LOCAL_CS["site",UNIT["metre",1]]', "coordinate system does not give latitudes"),
         (Affine(0.5, 0, 1e9, 0, -0.5, 1e9), "EPSG:32651", "not on the earth"),
         (Affine(5000, 0, 268_600, 0, -5000, 2_684_800), "EPSG:32651", "too large to be laid on a grid"),
         (Affine(0.001, 0, 268_600, 0, -0.001, 2_684_800), "EPSG:32651", "less than 3x3 pixels"),

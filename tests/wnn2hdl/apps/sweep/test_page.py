@@ -53,7 +53,7 @@ def test_the_page_tells_the_outcome_and_carries_its_pictures(
     outline = page(sets, plan, tmp_path, ("contour",))
     assert outline.images == ["data:image/svg+xml;base64,PHN2Zy8+"]
     assert "18 trials over 6 architectures, trained on 2,000 pixels of 2 images" in outline.text
-    assert "Chosen: n = " in outline.text
+    assert "Chosen: 3 address bits, " in outline.text
     assert "Beyond the grid" not in outline.text
 
 

@@ -41,7 +41,7 @@ def test_every_picture_is_written_twice_and_is_no_empty_sheet(tmp_path: Path) ->
         svg = (tmp_path / "a" / f"{name}.svg").read_text(encoding="utf-8")
         assert svg.count("<path") > 20
     # Letters are drawn as outlines, with the text beside them in a comment.
-    assert "1: n=2, k=3" in (tmp_path / "a" / "contour.svg").read_text(encoding="utf-8")
+    assert "address bits/RAMs   1: 2/3" in (tmp_path / "a" / "contour.svg").read_text(encoding="utf-8")
 
 
 def test_equal_results_give_equal_bytes(tmp_path: Path) -> None:

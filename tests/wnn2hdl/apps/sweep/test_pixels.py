@@ -10,7 +10,7 @@ from wnn2hdl.errors import InputError
 
 
 def uniform(name: str, forest: int, deforested: int) -> LabelledImage:
-    """An image whose only colour tells its name: all pixels (i, i, i) for image i."""
+    """An image whose only colour gives its name: all pixels (i, i, i) for image i."""
     labels = np.repeat([0, 1], [forest, deforested]).astype(np.uint8)
     return LabelledImage(name, np.full((len(labels), 3), int(name), np.uint8), labels)
 

@@ -126,8 +126,8 @@ def test_the_most_accurate_is_chosen_where_the_test_shows_it() -> None:
     comparison, p_value = decision.comparisons[(4, 16), (5, 10)]
     assert comparison.test == "signed-rank"
     assert p_value < 1e-6
-    assert "significantly more accurate than n = 5, k = 10" in decision.reasons
-    assert decision.reasons.endswith("Chosen: n = 4, k = 16.")
+    assert "significantly more accurate than 5 address bits, 10 RAMs" in decision.reasons
+    assert decision.reasons.endswith("Chosen: 4 address bits, 16 RAMs.")
 
 
 def test_of_those_not_shown_to_differ_the_smallest_is_chosen() -> None:
@@ -137,7 +137,7 @@ def test_of_those_not_shown_to_differ_the_smallest_is_chosen() -> None:
     decision = decide(collect(records))
     assert decision is not None
     assert decision.chosen.cell == (5, 10)
-    assert "not shown to differ" in decision.reasons
+    assert "Not shown to differ" in decision.reasons
 
 
 def test_the_best_trial_is_the_most_accurate_then_the_smallest() -> None:

@@ -100,7 +100,7 @@ def test_trials_that_end_in_another_order_give_the_same_tables(
 @pytest.mark.slow
 def test_a_sweep_killed_by_force_goes_on_where_it_stopped(tmp_path: Path) -> None:
     program = "import sys; from wnn2hdl.cli import main, sweep; sys.exit(main())"
-    options = ["sweep", "--n", "2..3", "--k", "2..9", "--trials", "6", "-o"]
+    options = ["sweep", "--address-bits", "2..3", "--rams", "2..9", "--trials", "6", "-o"]
     command = [sys.executable, "-c", program, *options]
 
     def run(folder: Path) -> "subprocess.Popen[bytes]":
@@ -142,7 +142,7 @@ def test_a_wider_grid_goes_on_in_the_same_folder(sets: PixelSets, plan: Plan, tm
 def test_a_folder_of_another_sweep_is_refused(sets: PixelSets, plan: Plan, tmp_path: Path) -> None:
     swept(sets, plan, tmp_path)
     other = replace(plan, recipe=replace(plan.recipe, seed=6))
-    with pytest.raises(InputError, match="the folder holds a sweep with another recipe"):
+    with pytest.raises(InputError, match="the folder holds a sweep with a different recipe"):
         swept(sets, other, tmp_path)
 
 

@@ -71,7 +71,7 @@ def small() -> BloomWisardModel:
         ({"mapping": np.array([[0, 2]], dtype=np.int32)}, "reads inputs 0 to 2"),
         ({"mapping": np.zeros((0, 2), dtype=np.int32)}, "the mapping has shape"),
         ({"hashes": np.array([[1]], dtype=np.uint32)}, "the hashes have shape"),
-        ({"hashes": np.array([[1, 4]], dtype=np.uint32)}, "hash constant 4 is no index of 4 entries"),
+        ({"hashes": np.array([[1, 4]], dtype=np.uint32)}, "hash constant 4 is not an index of 4 entries"),
         ({"contents": np.ones((2, 1, 3), dtype=np.bool_)}, "a power of two of entries"),
         ({"contents": np.ones((2, 2, 4), dtype=np.bool_)}, "the contents have shape"),
         ({"classes": ("a", "a")}, "two different classes"),

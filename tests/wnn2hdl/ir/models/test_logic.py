@@ -58,11 +58,11 @@ def test_a_level_is_the_longest_way_from_an_input() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"inputs": ("a", "a")}, "a name of its own"),
-        ({"outputs": ()}, "a name of its own"),
+        ({"inputs": ("a", "a")}, "its own name"),
+        ({"outputs": ()}, "its own name"),
         ({"gates": np.array([[2, 6]], dtype=np.uint32)}, "reads itself"),
         ({"gates": np.array([2, 4], dtype=np.uint32)}, "the gates have shape"),
-        ({"literals": np.array([8], dtype=np.uint32)}, "variable 4, which there is not"),
+        ({"literals": np.array([8], dtype=np.uint32)}, "variable 4, which does not exist"),
         ({"literals": np.array([1, 1], dtype=np.uint32)}, "2 output literals for 1 outputs"),
     ],
 )

@@ -80,7 +80,7 @@ def test_the_digest_sees_the_encoder_and_not_the_origin() -> None:
     [
         ({"encoder": Words(2), "layers": ()}, "at least one layer"),
         ({"groups": np.array([0], dtype=np.int32)}, "1 nodes vote"),
-        ({"groups": np.array([0, 2], dtype=np.int32)}, "a class that there is not"),
+        ({"groups": np.array([0, 2], dtype=np.int32)}, "a class that does not exist"),
     ],
 )
 def test_a_model_that_contradicts_itself(change: dict[str, Any], message: str) -> None:

@@ -74,7 +74,7 @@ def test_a_sum_saturates() -> None:
         ({"output_bits": 0}, "no layer: 2 nodes of 0 bits"),
         ({"values": np.zeros((2, 3), dtype=np.int32)}, "power of two"),
         ({"sources": np.array([0], dtype=np.int32)}, "every edge needs"),
-        ({"targets": np.array([0, 2], dtype=np.int32)}, "a node that there is not"),
+        ({"targets": np.array([0, 2], dtype=np.int32)}, "a node that does not exist"),
         ({"targets": np.array([1, 0], dtype=np.int32)}, "not in the order of their targets"),
         ({"sources": np.array([0, -1], dtype=np.int32)}, "a word before the first"),
     ],
@@ -87,7 +87,7 @@ def test_a_layer_that_contradicts_itself(change: dict[str, Any], message: str) -
 def test_layers_that_do_not_fit() -> None:
     with pytest.raises(ValueError, match="a node for each class"):
         TableSumModel(Words(1, 2), ("a", "b", "c"), (layer(),))
-    with pytest.raises(ValueError, match="3 input bits make no words of 2 bits"):
+    with pytest.raises(ValueError, match="3 input bits do not make words of 2 bits"):
         TableSumModel(Words(3), ("a", "b"), (layer(),))
     with pytest.raises(ValueError, match="reads words of 2 bits; the one before gives 4"):
         TableSumModel(Words(1, 2), ("a", "b"), (layer(), layer()))

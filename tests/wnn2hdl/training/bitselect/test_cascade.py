@@ -57,9 +57,9 @@ def test_no_table_reads_more_than_six_inputs() -> None:
 
 def test_progress_counts_the_starts_and_the_result_depends_on_the_seed_alone() -> None:
     mass = np.random.default_rng(3).integers(-9, 10, 1 << WIDTH)
-    told: list[tuple[int, int]] = []
-    first = find_cascade(mass, 2, seed=5, progress=lambda done, total: told.append((done, total)))
+    reported: list[tuple[int, int]] = []
+    first = find_cascade(mass, 2, seed=5, progress=lambda done, total: reported.append((done, total)))
     second = find_cascade(mass, 2, seed=5)
-    assert told == [(done, STARTS) for done in range(1, STARTS + 1)]
+    assert reported == [(done, STARTS) for done in range(1, STARTS + 1)]
     assert [table.inputs for table in first.tables] == [table.inputs for table in second.tables]
     assert (first.evaluate(CODES) == second.evaluate(CODES)).all()

@@ -67,7 +67,7 @@ def test_the_same_windows_give_the_same_model(model: WisardModel) -> None:
 
 def test_what_cannot_be_learned_is_refused() -> None:
     windows, labels = noisy_windows(50, 0)
-    with pytest.raises(InputError, match="two classes apart"):
+    with pytest.raises(InputError, match="separates two classes"):
         select(windows, labels, classes=("a", "b", "c"))
     with pytest.raises(InputError, match="no training pixels: bright"):
         select(windows, np.zeros_like(labels))

@@ -70,13 +70,13 @@ def test_a_single_image_is_enough(scenes: list[Colours]) -> None:
 
 
 def test_more_than_two_classes_are_refused(scenes: list[Colours]) -> None:
-    with pytest.raises(InputError, match=r"tells two classes apart: forest, river, road; train discrim"):
+    with pytest.raises(InputError, match=r"separates two classes: forest, river, road; train discrim"):
         select_bits(scenes, ("forest", "river", "road"), luts=1, seed=0)
 
 
 @pytest.mark.parametrize("luts", [0, 4])
 def test_other_numbers_of_luts_are_refused(scenes: list[Colours], luts: int) -> None:
-    with pytest.raises(InputError, match=rf"1 to 3 LUTs a pixel: {luts}; ask for 1 to 3"):
+    with pytest.raises(InputError, match=rf"1 to 3 LUTs per pixel: {luts}; ask for 1 to 3"):
         select_bits(scenes, CLASSES, luts=luts, seed=0)
 
 

@@ -14,11 +14,11 @@ from wnn2hdl.apps.navigation.matching.tiles import Tiles, tile_side
 from wnn2hdl.errors import InputError
 
 DIRECT = 1 << 22
-"""Up to so many positions are all scored exactly, if the index is not told otherwise."""
+"""Searches of up to this many positions are scored exactly by default."""
 
 CELL = 32
 CELLS = 64
-"""A coarse search names so many squares of this side, all positions of which are then scored exactly."""
+"""How many squares of what side a coarse search names, all positions of which are then scored exactly."""
 
 
 class MapIndex:
@@ -40,7 +40,7 @@ class MapIndex:
         image: ``[height, width]``, bool, uint8 or float32; kept, not copied.
         valid: bool ``[height, width]``, the pixels that hold the map; all by default; kept, not copied.
         reduction: factor by which the coarse search shrinks: 1, 2, 4 or 8.
-        direct: searches of at most so many positions are exact throughout.
+        direct: searches of at most this many positions are exact throughout.
 
     Raises:
         InputError: types or shapes do not fit.
@@ -159,7 +159,7 @@ class MapIndex:
         return cells
 
     def _shrunk(self) -> Layers:
-        """The map shrunk, strip by strip: layers of the full map would take 4 or 8 bytes a pixel each."""
+        """The map shrunk, strip by strip: layers of the full map would take 4 or 8 bytes per pixel each."""
         strip = 256 * self._reduction
         strips = [
             Layers.of(self._image[top : top + strip], self._valid[top : top + strip], np.float32).shrink(
@@ -178,7 +178,7 @@ def _checked(picture: Picture, inside: NDArray[np.bool_] | None) -> tuple[Pictur
     """
     if picture.dtype not in (np.bool_, np.uint8, np.float32) or picture.ndim != 2 or picture.size == 0:
         raise InputError(
-            "this is no picture to match",
+            "this is not a picture to match",
             value=f"{picture.dtype} of shape {picture.shape}",
             hint="use bool, uint8 or float32 of shape [height, width]",
         )

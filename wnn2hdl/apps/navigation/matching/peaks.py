@@ -19,7 +19,7 @@ class Window:
         top: first row of a template's top left pixel.
         left: first column.
         bottom: first row that is not allowed any more.
-        right: likewise for columns.
+        right: first column that is not allowed any more.
     """
 
     top: int

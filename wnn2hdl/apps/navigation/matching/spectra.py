@@ -1,7 +1,7 @@
 """Correlation by Fourier transforms, of pictures of which only some pixels count.
 
 Transforms are OpenCV's, which are about twice as fast as SciPy's at the sizes used (measured: 1.2 against
-1.9 ns a pixel for the inverse of 512 x 512 in single precision).
+1.9 ns per pixel for the inverse of 512 x 512 in single precision).
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Layers:
     def shrink(self, factor: int) -> "Layers":
         """The means over squares of ``factor`` pixels, padded with pixels that do not count.
 
-        Squares are averaged, not squared anew, so that scores of shrunk pictures estimate those of the full
+        Squares are averaged, not squared again, so that scores of shrunk pictures estimate those of the full
         ones: what they miss is the part finer than a square.
         """
         value = _shrink(self.value, factor)

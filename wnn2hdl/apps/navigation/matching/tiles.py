@@ -16,7 +16,7 @@ STEP = 0.75
 
 
 def tile_side(template: int) -> int:
-    """Side of the tiles for templates whose longer side has so many pixels."""
+    """Side of the tiles for templates whose longer side has this many pixels."""
     side = SMALLEST
     while template > side - round(STEP * side) + 1:
         side *= 2

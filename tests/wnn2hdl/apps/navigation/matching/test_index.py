@@ -180,7 +180,7 @@ def test_memory_is_that_of_the_spectra_kept() -> None:
     ("template", "mask", "score", "message"),
     [
         (np.zeros((4, 4), np.uint8), None, "ncc", "different types"),
-        (np.zeros((4, 4), np.int64), None, "ncc", "no picture to match"),
+        (np.zeros((4, 4), np.int64), None, "ncc", "not a picture to match"),
         (np.zeros((4, 4), np.bool_), np.ones((4, 5), np.bool_), "ncc", "mask does not fit"),
     ],
 )
