@@ -43,12 +43,11 @@ class Command(click.Command):
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
-            if not error.possibilities:
-                words = _words(error.option_name)
-                error.possibilities = [
-                    name for parameter in self.params for name in parameter.opts if words & _words(name)
-                ]
-            raise
+            if error.possibilities:
+                raise
+            words = _words(error.option_name)
+            alike = [name for parameter in self.params for name in parameter.opts if words & _words(name)]
+            raise click.NoSuchOption(error.option_name, possibilities=alike, ctx=ctx) from error
 
 
 def _words(option: str) -> set[str]:
