@@ -43,11 +43,12 @@ class Command(click.Command):
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
-            if error.possibilities:
-                raise
             words = _words(error.option_name)
             alike = [name for parameter in self.params for name in parameter.opts if words & _words(name)]
-            raise click.NoSuchOption(error.option_name, possibilities=alike, ctx=ctx) from error
+            if error.possibilities or not alike:
+                raise
+            message = f"No such option '{error.option_name}'; did you mean {' or '.join(sorted(alike))}?"
+            raise click.UsageError(message, ctx) from error
 
 
 def _words(option: str) -> set[str]:

@@ -64,10 +64,10 @@ def test_an_option_is_a_flag_a_place_or_a_value_in_all_commands() -> None:
 @pytest.mark.parametrize(
     ("line", "complaint"),
     [
-        (("train", "--max-luts", "2"), "No such option '--max-luts'. Did you mean '--luts-per-pixel'?"),
+        (("train", "--max-luts", "2"), "No such option '--max-luts'; did you mean --luts-per-pixel?"),
         (
             ("compile", "--luts-per-pixel", "2"),
-            "No such option '--luts-per-pixel'. (Did you mean one of: '--edge-luts', '--max-luts'?)",
+            "No such option '--luts-per-pixel'; did you mean --edge-luts or --max-luts?",
         ),
         (("verify", "--fast"), "No such option '--fast'."),
     ],
