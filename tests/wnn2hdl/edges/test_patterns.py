@@ -86,9 +86,9 @@ def test_a_wrong_pattern_is_counted_and_shown(tmp_path: Path, entry: object, sho
     ("text", "message"),
     [
         ("[1, 2", "not a file of edge patterns, or a damaged one"),
-        ("[]", "holds no list of edge patterns"),
-        ("7", "holds no list of edge patterns"),
-        ('{"codes": [1]}', "holds no list of edge patterns"),
+        ("[]", "does not hold a list of edge patterns"),
+        ("7", "does not hold a list of edge patterns"),
+        ('{"codes": [1]}', "does not hold a list of edge patterns"),
     ],
 )
 def test_a_file_that_is_no_list_is_refused(tmp_path: Path, text: str, message: str) -> None:

@@ -39,7 +39,7 @@ def test_whether_features_are_scaled_is_never_guessed() -> None:
         InputError, match=r"it is not said whether the table's are; give --scaled if they are, --raw if"
     ):
         row_confusion(noted, table((1.0, "low")), raw=None)
-    with pytest.raises(InputError, match="notes no scaling: --raw"):
+    with pytest.raises(InputError, match="records no scaling: --raw"):
         row_confusion(model, table((1.0, "low")), raw=True)
     other = replace(model, origin={"scaler": {"mean": [1.0, 2.0], "scale": [1.0, 1.0]}})
     with pytest.raises(InputError, match="of another number of features: 2"):
