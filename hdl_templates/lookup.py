@@ -40,15 +40,15 @@ def draw_network(
     signals: dict[str, Value] = dict(zip(network.inputs, bits, strict=True))
     signals |= {name: Const(value, 1) for value, name in enumerate(CONSTANTS)}
     muxes = {cell.name for cell in network.muxes}
-    reads = _reads(network)
+    reads, outputs = _reads(network), {signal for _, signal in network.outputs}
     for cell in network.cells:
         if cell.name not in reads:
             continue
         pins = [signals[name] for name in _pins(cell)]
         if not isinstance(platform, Emission):
             value = _simulated(cell, pins)
-            # A signal costs Amaranth's simulator more than a look-up.
-            if reads[cell.name] == 1:
+            # A signal costs Amaranth's simulator more than a look-up; but others may read an output often.
+            if reads[cell.name] == 1 and cell.name not in outputs:
                 signals[cell.name] = value
                 continue
             signals[cell.name] = shared = Signal(name=f"{prefix}{cell.name}")

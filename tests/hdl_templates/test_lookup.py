@@ -43,8 +43,8 @@ def test_equations_are_no_instances() -> None:
     assert outputs[0].name == "x_chosen"
 
 
-def test_a_simulation_has_signals_only_for_what_is_read_twice() -> None:
+def test_a_simulation_has_signals_only_for_outputs_and_what_is_read_twice() -> None:
     fragment, outputs = drawn("cells", None)
     assert fragment.subfragments == []
-    assert fragment.statements == {}
-    assert not isinstance(outputs[0], Signal)
+    assert len(fragment.statements["comb"]) == 1
+    assert isinstance(outputs[0], Signal)

@@ -15,7 +15,7 @@ from hdl_templates.hierarchy import Emission
 from hdl_templates.vectors import pack
 from tests.random_circuits import KINDS, circuits, networks, random_inputs
 from wnn2hdl.elaborate import CircuitComponent, component
-from wnn2hdl.ir import BitSelect, LutNetwork, Style, TruthTable, codes_to_bits
+from wnn2hdl.ir import BitSelect, Lut, LutNetwork, Style, TruthTable, codes_to_bits
 from wnn2hdl.ir.circuit import Circuit, Instance
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
 from wnn2hdl.ir.wires import Bits, Port, Slice
@@ -261,3 +261,17 @@ def test_parts_of_one_circuit_are_one_module() -> None:
     emission = Emission("p_")
     Fragment.get(component(Circuit("two", "T.", ports, instances, drivers), style="cells"), emission)
     assert list(emission.parts) == ["p_match_3", "p_compress_3_3_to_4", "p_match"]
+
+
+def test_a_simulator_takes_tables_that_read_tables() -> None:
+    """Expressions in expressions would be of a size that is exponential in their number."""
+    names = ("a", "b")
+    xor = LutNetwork(names, (Lut("t0", names, 0b0110),), (("o", "t0"),))
+    bits = [Slice("x", 0), Slice("x", 1)]
+    nodes = []
+    for place in range(60):
+        nodes.append(Table(f"t{place}", (bits[-2], bits[-1]), xor))
+        bits.append(Slice(f"t{place}"))
+    circuit = Circuit("chain", "A chain.", (Port("x", 2),), tuple(nodes), {"o": (bits[-1],)})
+    inputs = {"x": codes_to_bits(np.arange(4), 2)}
+    simulate(component(circuit, style="cells"), inputs, circuit.evaluate(inputs))
