@@ -26,7 +26,17 @@ from wnn2hdl.ir.models import load_model
 from wnn2hdl.lower.targets import TARGETS
 
 SECTIONS = {
-    "Circuit": ("--target", "--name", "--mode", "--care", "--care-min", "--style", "--effort", "--max-luts"),
+    "Circuit": (
+        "--target",
+        "--name",
+        "--input",
+        "--mode",
+        "--care",
+        "--care-min",
+        "--style",
+        "--effort",
+        "--max-luts",
+    ),
     "Edge filter": ("--edges", "--edge-images", "--edge-patterns", "--edge-luts"),
     "Pictures": ("--test-images", "--test-masks", *MASKS, *READING),
 }
@@ -47,8 +57,8 @@ SECTIONS = {
 )
 @click.option(
     "--input",
-    metavar="Q3.12",
-    help="Format of the features that a network reads: whole and fraction bits.  [default: the model's]",
+    metavar="FORMAT",
+    help="Read features as words of this format, as in Q3.12.  [default: the model's]",
 )
 @click.option(
     "--mode",
