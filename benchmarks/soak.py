@@ -37,10 +37,10 @@ WNN2HDL = (sys.executable, "-m", "wnn2hdl")
 COMMANDS: Mapping[str, Sequence[str]] = {
     "train": ("train", "--images", "{scene}/images", "--masks", "{scene}/masks", "-o", "{out}/model.json"),
     "compile": ("compile", "{model}", "--target", "pixel", "-o", "{out}/build"),
-    "samples": ("samples", "--images", "4", "-o", "{out}/samples"),
+    "samples": ("samples", "--count", "4", "-o", "{out}/samples"),
     "evaluate": ("evaluate", "{model}", "--images", "{scene}/images", "--masks", "{scene}/masks", "--json"),
     "scan": ("scan", "{model}", "{scene}/images", "-o", "{out}/scan"),
-    "sweep": ("sweep", "--n", "2", "--k", "2..4", "--trials", "2", "-o", "{out}/sweep"),
+    "sweep": ("sweep", "--address-bits", "2", "--rams", "2..4", "--trials", "2", "-o", "{out}/sweep"),
     "report": ("report", "{build}", "-o", "{out}/index.html"),
     "gate": ("report", "{build}", "--max-luts", "0", "--format", "junit", "-o", "{out}/gate.xml"),
     "verify": ("verify", "{build}"),
@@ -88,7 +88,7 @@ class Soak:
             (self.folder / f"out{place}").mkdir()
         (self.folder / "tmp").mkdir()
         for words in (
-            ("samples", "--images", "3", "--side", "200", "-o", "{scene}"),
+            ("samples", "--count", "3", "--side", "200", "-o", "{scene}"),
             ("train", "-o", "{model}"),
             ("compile", "{model}", "--target", "pixel", "-o", "{build}"),
         ):

@@ -47,7 +47,11 @@ def features_width(encoder: Encoder) -> int:
         return encoder.features * encoder.input.bits
     if isinstance(encoder, Words):
         return encoder.width
-    raise InputError("the model reads no words of features", value=encoder.kind)
+    raise InputError(
+        "the model states no fixed-point format of its features",
+        value=encoder.kind,
+        hint="state one with --input",
+    )
 
 
 def encoder_bits(encoder: Encoder, features: Bits) -> Bits:

@@ -39,7 +39,8 @@ def test_a_build_is_verified_until_it_is_changed(run: Run, changeable: Path) -> 
     assert done.status == 1
     assert done.stdout == "report.md was changed\n"
     assert (
-        done.stderr.splitlines()[-1] == f"wnn2hdl: {changeable} is not as it was built: report.md was changed"
+        done.stderr.splitlines()[-1]
+        == f"wnn2hdl: {changeable} does not pass its checks: report.md was changed"
     )
 
 

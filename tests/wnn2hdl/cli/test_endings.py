@@ -56,7 +56,7 @@ def test_a_stopped_compile_leaves_nothing(model: Path, tmp_path: Path, number: s
     process.send_signal(number)
     status, line = end(process)
     assert status == 128 + number
-    assert line.endswith("nothing half-written was left")
+    assert line.endswith("no half-written file is left")
     assert not [*tmp_path.iterdir()]
 
 

@@ -34,11 +34,13 @@ def test_an_empty_care_set_is_refused_since_any_circuit_would_pass(circuits: Mod
             specify(model, block.edges, care)
 
 
-def test_a_model_of_features_is_no_pixel_model(circuits: ModuleType) -> None:
+def test_features_without_a_fixed_point_format_are_refused(circuits: ModuleType) -> None:
     mapping = np.zeros((1, 1, 1), dtype=np.int64)
     counts = np.zeros((2, 1, 2), dtype=np.int64)
     model = WisardModel(Thermometer(((0.5,),)), ("a", "b"), mapping, counts, 1)
-    with pytest.raises(InputError, match=r"does not read pixels: its encoder is of kind thermometer"):
+    with pytest.raises(
+        InputError, match=r"no fixed-point format of its features: thermometer; state one with --input"
+    ):
         specify(model, circuits.random_block(0).edges, {})
 
 

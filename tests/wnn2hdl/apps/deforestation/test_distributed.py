@@ -62,7 +62,7 @@ def test_a_worker_sees_that_the_file_is_a_new_one(cluster: Any, task: Task) -> N
 @pytest.mark.slow
 def test_what_a_worker_cannot_read_is_one_line(cluster: Any, task: Task, tmp_path: Path) -> None:
     elsewhere = Task(tmp_path / "none.png", task.reading, task.classifier, task.method)
-    with pytest.raises(InputError, match=r"none\.png \(no such file\)"):
+    with pytest.raises(InputError, match=r"none\.png \(No such file or directory\)"):
         list(run_distributed(cluster.scheduler_address, elsewhere, WINDOWS))
 
 
