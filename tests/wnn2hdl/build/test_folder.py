@@ -47,7 +47,7 @@ def test_what_is_no_build_is_not_touched(tmp_path: Path) -> None:
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "cat.png").touch()
     for target in (tmp_path / "photos", tmp_path / "photos" / "cat.png"):
-        with pytest.raises(InputError, match="no earlier build"), staged(target):
+        with pytest.raises(InputError, match="not an earlier build"), staged(target):
             pass
     assert (tmp_path / "photos" / "cat.png").exists()
 
@@ -114,7 +114,7 @@ def test_what_someone_puts_there_meanwhile_stays(tmp_path: Path) -> None:
             (tmp_path / "build").mkdir()
             (tmp_path / "build" / "photo.png").touch()
 
-    with pytest.raises(InputError, match="no earlier build"):
+    with pytest.raises(InputError, match="not an earlier build"):
         make()
     assert (tmp_path / "build" / "photo.png").exists()
 

@@ -42,7 +42,7 @@ def test_whether_features_are_scaled_is_never_guessed() -> None:
     with pytest.raises(InputError, match="records no scaling: --raw"):
         row_confusion(model, table((1.0, "low")), raw=True)
     other = replace(model, origin={"scaler": {"mean": [1.0, 2.0], "scale": [1.0, 1.0]}})
-    with pytest.raises(InputError, match="is for another number of features: 2"):
+    with pytest.raises(InputError, match="for another number of features: 2"):
         row_confusion(other, table((1.0, "low")), raw=True)
 
 

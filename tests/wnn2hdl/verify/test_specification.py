@@ -45,5 +45,5 @@ def test_values_are_shown_in_hexadecimal() -> None:
 
 
 def test_a_care_set_of_other_codes_is_refused() -> None:
-    with pytest.raises(InputError, match=r"one of other codes: 30 bits, not 2"):
+    with pytest.raises(InputError, match=r"has other codes: 30 bits, not 2"):
         flags_of(Everything(30), 2, "pixel")
