@@ -55,7 +55,7 @@ def circuits(
     """A circuit of up to eight nodes.
 
     Args:
-        kinds: the kinds of node that may occur.
+        kinds: the kinds of node that may occur, also in the circuits of instances.
         mapped: whether its tables are LUT networks, not truth tables.
         name: its name.
     """
@@ -65,7 +65,7 @@ def circuits(
     nodes: list[Node] = []
     for i in range(draw(st.integers(1, 8))):
         time = draw(st.sampled_from(sorted(bits)))
-        node = draw(_nodes(f"node{i}", draw(st.sampled_from(kinds)), bits[time], mapped=mapped))
+        node = draw(_nodes(f"node{i}", kinds, bits[time], mapped=mapped))
         nodes.append(node)
         driven = [Slice(net, low) for net, width in node.drives.items() for low in range(width)]
         bits.setdefault(time + node.latency, []).extend(driven)
@@ -85,9 +85,11 @@ def _words(draw: st.DrawFn, bits: Sequence[Slice], *, width: int | None = None) 
 
 
 @st.composite
-def _nodes(draw: st.DrawFn, name: str, kind: str, bits: Sequence[Slice], *, mapped: bool) -> Node:
+def _nodes(draw: st.DrawFn, name: str, kinds: Sequence[str], bits: Sequence[Slice], *, mapped: bool) -> Node:
+    kind = draw(st.sampled_from(kinds))
     if kind == "instance":
-        inner = draw(circuits(KINDS[:-1], mapped=mapped, name=f"inner_{name}"))
+        simple = [other for other in kinds if other != "instance"]
+        inner = draw(circuits(simple, mapped=mapped, name=f"inner_{name}"))
         return Instance(
             name, inner, {port.name: draw(_words(bits, width=port.width)) for port in inner.inputs}
         )
