@@ -145,13 +145,26 @@ def in_parallel(
     """
     batch = _Batch()
     pool = ThreadPoolExecutor(workers or cores(), initializer=batch.join)
+    failures: list[BaseException] = []
+
+    def call(item: Item) -> Result:
+        try:
+            return function(item)
+        except BaseException as error:
+            # Closed here, since this thread may take the next item before the one that waits hears of it.
+            failures.append(error)
+            batch.close()
+            raise
+
     try:
         waiting: dict[Future[Result], int] = {
-            pool.submit(function, item): position for position, item in enumerate(items)
+            pool.submit(call, item): position for position, item in enumerate(items)
         }
         while waiting:
             done, _ = wait(waiting, return_when=FIRST_COMPLETED)
             for future in done:
+                if failures:
+                    raise failures[0]
                 yield waiting.pop(future), future.result()
     finally:
         batch.close()
