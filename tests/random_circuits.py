@@ -55,7 +55,7 @@ def circuits(
     """A circuit of up to eight nodes.
 
     Args:
-        kinds: the kinds of node that may occur, also in the circuits of instances.
+        kinds: the kinds of node that may occur, also in instances; any are in these if no other is given.
         mapped: whether its tables are LUT networks, not truth tables.
         name: its name.
     """
@@ -88,7 +88,7 @@ def _words(draw: st.DrawFn, bits: Sequence[Slice], *, width: int | None = None) 
 def _nodes(draw: st.DrawFn, name: str, kinds: Sequence[str], bits: Sequence[Slice], *, mapped: bool) -> Node:
     kind = draw(st.sampled_from(kinds))
     if kind == "instance":
-        simple = [other for other in kinds if other != "instance"]
+        simple = [other for other in kinds if other != "instance"] or KINDS[:-1]
         inner = draw(circuits(simple, mapped=mapped, name=f"inner_{name}"))
         return Instance(
             name, inner, {port.name: draw(_words(bits, width=port.width)) for port in inner.inputs}
