@@ -57,9 +57,9 @@ class Journal:
         """Place and content of each record, in the order in which they were appended."""
         place = len(self._head)
         while place < self._end:
-            content = self.read(place)
+            content, following = self._record(place)
             yield place, content
-            place += len(_framed(content))
+            place = following
 
     def append(self, content: bytes) -> int:
         """Add a record.
@@ -86,19 +86,25 @@ class Journal:
 
     def read(self, place: int) -> bytes:
         """The content of the record at a place."""
+        return self._record(place)[0]
+
+    def _record(self, place: int) -> tuple[bytes, int]:
+        """The content of the record at a place, and the place after it."""
         if self._reader is None:
             self._reader = self._path.open("rb")
         self._reader.seek(place)
         _, length = self._reader.readline().split()
-        return self._reader.read(int(length))
+        content = self._reader.read(int(length))
+        # The end of a line closes the record.
+        return content, self._reader.tell() + 1
 
     def _sound_end(self, stream: BinaryIO) -> int:
         """Where the sound part of the file ends; 0 if it has another identity."""
         if stream.read(len(self._head)) != self._head:
             return 0
         end = len(self._head)
-        while (content := _next(stream)) is not None:
-            end += len(_framed(content))
+        while _next(stream) is not None:
+            end = stream.tell()
         return end
 
     def _open_writer(self) -> BinaryIO:

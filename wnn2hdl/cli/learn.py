@@ -32,7 +32,6 @@ from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
-from wnn2hdl.report.plots import plot_pareto
 from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
 from wnn2hdl.training.discriminators import LEFT_OUT, train, with_colours
 from wnn2hdl.training.neighbourhood import train_neighbourhood
@@ -229,6 +228,9 @@ def _save_front(
     points: tuple[Point, ...], output: Path, colours: NDArray[np.int64] | None
 ) -> list[dict[str, Any]]:
     """Write a model for each point of the front, and the plot, beside the best model."""
+    # Not at the top: other trainings need not wait for it.
+    from wnn2hdl.report.plots import plot_pareto
+
     front = pareto_front(points)
     rows = []
     for point in front:

@@ -111,7 +111,7 @@ def _codes(path: Path, kind: str, *, checked: bool) -> tuple[NDArray[np.int64], 
         colours, valid = decode(path, alpha="exclude")
         codes, labelled = colour_codes(colours), np.ones(colours.shape[:2], dtype=np.bool_)
         labelled = labelled if valid is None else valid
-        index = indices(path)
+        index = indices(path) if checked else None
         index = None if index is None else turned(index, head.orientation)
     else:
         stored = read_stored(path)

@@ -16,7 +16,7 @@ from PIL import Image, ImageFile, TiffImagePlugin, UnidentifiedImageError
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster.formats import PLAIN_FORMATS, TIFF
-from wnn2hdl.raster.reading import MOST_PIXELS, require_decodable
+from wnn2hdl.raster.reading import MOST_PIXELS, ORIENTATION_TAG, require_decodable
 from wnn2hdl.raster.validity import AlphaMeaning, require_mask
 
 Scalar = TypeVar("Scalar", np.uint8, np.bool_)
@@ -34,7 +34,6 @@ _SPEAKING_TAGS = frozenset({338, 42112, 42113})
 """Tags of a TIFF that say more: extra samples, GDAL_METADATA, GDAL_NODATA."""
 _JPEG_IN_TIFF = ("jpeg", "tiff_jpeg")
 
-_ORIENTATION_TAG = 0x0112
 _STRIP_PIXELS = 1 << 20
 
 _BROKEN = (
@@ -91,7 +90,7 @@ def plain_head(path: Path, kind: str) -> PlainHead | None:
         if picture.format == "BMP" and picture.mode == "1":
             # Pillow takes indices of 8 bits for single bits where two colours are black and white.
             return None
-        turn = int(picture.getexif().get(_ORIENTATION_TAG, 1))
+        turn = int(picture.getexif().get(ORIENTATION_TAG, 1))
         turn = turn if 1 <= turn <= 8 else 1
         if isinstance(picture, TiffImagePlugin.TiffImageFile) and (turn != 1 or not _plain_tiff(picture)):
             return None
@@ -118,7 +117,7 @@ def decode(path: Path, alpha: AlphaMeaning | None) -> tuple[NDArray[np.uint8], N
         InputError: the file is damaged or truncated, or its alpha looks like data.
     """
     with _opened(path) as picture:
-        turn = int(picture.getexif().get(_ORIENTATION_TAG, 1))
+        turn = int(picture.getexif().get(ORIENTATION_TAG, 1))
         width, height = picture.size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
         opacity = np.empty((height, width), dtype=np.uint8) if picture.has_transparency_data else None

@@ -9,11 +9,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.errors import InputError
 from wnn2hdl.images.plain import PlainHead, decode, plain_head
 from wnn2hdl.raster import Exclusion, Georeference, RasterReader, Reading, format_of
 from wnn2hdl.raster.formats import PNG
 from wnn2hdl.raster.handles import Handles
+from wnn2hdl.raster.reading import require_upright, stored_orientation
 from wnn2hdl.raster.validity import AlphaMeaning
 
 PLAIN_PIXELS = 1 << 24
@@ -109,15 +109,6 @@ class PlainFile:
         with Handles(self._path).borrowed() as source:
             return Georeference.of(source)
 
-    def require_upright(self) -> None:
-        """Raise InputError if the picture is turned, so that a mask for it has two readings."""
-        if self._head.orientation != 1:
-            raise InputError(
-                f"the picture is stored turned (orientation {self._head.orientation})",
-                value=self._path,
-                hint="save it upright",
-            )
-
     def read(
         self, row: int, column: int, height: int, width: int
     ) -> tuple[NDArray[np.uint8], NDArray[np.bool_] | None]:
@@ -183,10 +174,12 @@ def open_picture(path: Path, reading: Reading = Reading()) -> Source:  # noqa: B
         plain = PlainFile(path, head, reading.alpha)
         if reading.exclude is None:
             return plain
-        plain.require_upright()
+        # Turned, there would be two readings of what is excluded.
+        require_upright(path, head.orientation)
         return Masked(plain, reading.exclude)
     raster = RasterReader(path, reading)
-    raster.require_upright()
+    # GDAL does not turn its windows.
+    require_upright(path, stored_orientation(path))
     return raster if reading.exclude is None else Masked(raster, reading.exclude)
 
 

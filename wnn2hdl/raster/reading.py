@@ -20,7 +20,7 @@ from wnn2hdl.raster.validity import AlphaMeaning, Validity, masking_alpha
 MOST_PIXELS = 178_956_970
 """What is decoded at once: twice what Pillow warns of, where it refuses a picture."""
 
-_ORIENTATION_TAG = 0x0112
+ORIENTATION_TAG = 0x0112
 _UPRIGHT = 1
 _SHOWN = 255
 
@@ -105,16 +105,6 @@ class RasterReader:
         with self._handles.borrowed() as source:
             return Georeference.of(source)
 
-    def require_upright(self) -> None:
-        """Raise InputError if the file says that viewers must turn the picture; windows are not turned."""
-        turn = stored_orientation(self._path)
-        if turn != _UPRIGHT:
-            raise InputError(
-                f"the picture is stored turned (orientation {turn})",
-                value=self._path,
-                hint="save it upright",
-            )
-
     def read(
         self, row: int, column: int, height: int, width: int
     ) -> tuple[NDArray[np.uint8], NDArray[np.bool_] | None]:
@@ -158,9 +148,17 @@ def stored_orientation(path: Path) -> int:
     try:
         # Pillow warns of large pictures and refuses larger ones; only the head is read here.
         with warnings.catch_warnings(action="ignore"), Image.open(path) as picture:
-            return int(picture.getexif().get(_ORIENTATION_TAG, _UPRIGHT))
+            return int(picture.getexif().get(ORIENTATION_TAG, _UPRIGHT))
     except (OSError, SyntaxError, ValueError, TypeError, KeyError, Image.DecompressionBombError):
         return _UPRIGHT
+
+
+def require_upright(path: Path, orientation: int) -> None:
+    """Raise InputError unless a picture is stored as it is to be viewed: its ``orientation`` is 1."""
+    if orientation != _UPRIGHT:
+        raise InputError(
+            f"the picture is stored turned (orientation {orientation})", value=path, hint="save it upright"
+        )
 
 
 def require_decodable(path: Path, height: int, width: int, *, hint: str = "cut it into tiles") -> None:

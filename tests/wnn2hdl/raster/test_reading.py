@@ -12,6 +12,7 @@ from PIL import Image
 from wnn2hdl.errors import ExtraMissingError, InputError
 from wnn2hdl.images import read_rgb
 from wnn2hdl.raster import Georeference, RasterReader, Reading
+from wnn2hdl.raster.reading import require_upright, stored_orientation
 
 rasterio = pytest.importorskip("rasterio")
 
@@ -98,21 +99,26 @@ def test_thinned_pictures_show_the_nearest_pixels(save: Any, scene: NDArray[np.u
     assert np.array_equal(reader.thinned(8, 14), np.moveaxis(scene, 0, 2)[2::5, 2::5])
 
 
+def upright(path: Path) -> None:
+    RasterReader(path, Reading())
+    require_upright(path, stored_orientation(path))
+
+
 def test_a_picture_that_is_to_be_turned_is_not_read_in_windows(tmp_path: Path) -> None:
     exif = Image.Exif()
     exif[0x0112] = 6
     Image.new("RGB", (20, 10)).save(tmp_path / "held.jpg", exif=exif)
     with pytest.raises(InputError, match="orientation 6"):
-        RasterReader(tmp_path / "held.jpg", Reading()).require_upright()
+        upright(tmp_path / "held.jpg")
     Image.new("RGB", (20, 10)).save(tmp_path / "upright.jpg")
-    RasterReader(tmp_path / "upright.jpg", Reading()).require_upright()
+    upright(tmp_path / "upright.jpg")
 
 
 def test_a_large_picture_draws_no_warning(
     monkeypatch: pytest.MonkeyPatch, save: Any, scene: NDArray[np.uint8]
 ) -> None:
     monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", scene[0].size - 1)
-    RasterReader(save(scene, photometric="rgb"), Reading()).require_upright()
+    upright(save(scene, photometric="rgb"))
 
 
 def test_what_is_no_raster_is_one_line(tmp_path: Path, save: Any, scene: NDArray[np.uint8]) -> None:

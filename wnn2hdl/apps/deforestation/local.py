@@ -23,12 +23,11 @@ def run_locally(jobs: int, task: Task, windows: Iterable[Window]) -> Generator[W
     Raises:
         InputError: the picture cannot be read.
     """
-    source = task.open()
     pool = ThreadPoolExecutor(jobs)
     running: deque[Future[WindowResult]] = deque()
     try:
         for window in windows:
-            running.append(pool.submit(classify_window, source, task.classifier, task.method, window))
+            running.append(pool.submit(classify_window, task.source, task.classifier, task.method, window))
             if len(running) >= 2 * jobs:
                 yield running.popleft().result()
         while running:

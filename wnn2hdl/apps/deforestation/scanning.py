@@ -210,7 +210,7 @@ class Scanner:
     def _picture(self, picture: Path, output: Path, identity: dict[str, Any]) -> dict[str, Any]:
         """Scan one picture; all files but the summary."""
         task = Task(picture.absolute(), self.options.reading, self.classifier, self.options.method)
-        source = task.open()
+        source = task.source
         self._check_place(source)
         palette = overlay_palette(self.classifier.classes)
         with unfinished(output) as results, FinishedWindows(output / WORK / WINDOWS, identity) as kept:

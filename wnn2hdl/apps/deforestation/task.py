@@ -1,7 +1,9 @@
 """What is done with every window of a picture: small enough to be sent to another machine."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 from wnn2hdl.apps.deforestation.classify import Method
@@ -28,6 +30,11 @@ class Task:
     method: Method
     token: str = field(default_factory=lambda: uuid4().hex)
 
-    def open(self) -> Source:
-        """Open the picture."""
+    @cached_property
+    def source(self) -> Source:
+        """The picture, opened once: a plain one is decoded whole."""
         return open_picture(self.path, self.reading)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # An open picture cannot be sent; whoever receives the task opens its own.
+        return {name: value for name, value in vars(self).items() if name != "source"}

@@ -35,6 +35,16 @@ def binary_images(picture: NDArray[np.uint8], valid: NDArray[np.bool_], side: in
     return np.asarray(np.stack([red > 0, blue > 0, red > blue]) & valid)
 
 
+def shrunk(valid: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
+    """Valid pixels whose surroundings of ``by`` pixels are valid too, so that no border is taken for an edge.
+
+    What lies beyond the picture is not valid.
+    """
+    inside = np.pad(valid, by).astype(np.uint8)
+    core = cv2.erode(inside, np.ones((2 * by + 1, 2 * by + 1), dtype=np.uint8))
+    return np.asarray(core[by:-by, by:-by] > 0)
+
+
 def _box_sum(values: NDArray[np.uint8] | NDArray[np.bool_], side: int) -> NDArray[np.int64]:
     """Sum over the square around each pixel, as far as it lies in the picture: int64 ``[height, width]``."""
     half = side // 2

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.apps.navigation.binarise import shrunk
 from wnn2hdl.apps.navigation.channels import ChannelIndex, Channels
 from wnn2hdl.apps.navigation.matching import MapIndex, Match, Picture, Score, Window
 from wnn2hdl.apps.navigation.weightless import WeightlessEdges
@@ -129,13 +130,3 @@ def grey_levels(
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
     """The picture in grey, without any edges."""
     return grey(picture), valid
-
-
-def shrunk(valid: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
-    """Valid pixels whose surroundings of ``by`` pixels are valid too, so that no border is taken for an edge.
-
-    What lies beyond the picture is not valid.
-    """
-    inside = np.pad(valid, by).astype(np.uint8)
-    core = cv2.erode(inside, np.ones((2 * by + 1, 2 * by + 1), dtype=np.uint8))
-    return np.asarray(core[by:-by, by:-by] > 0)

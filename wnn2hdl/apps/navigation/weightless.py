@@ -23,11 +23,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.apps.navigation.binarise import binary_images
+from wnn2hdl.apps.navigation.binarise import binary_images, shrunk
 from wnn2hdl.apps.navigation.channels import ChannelIndex, Channels
 from wnn2hdl.apps.navigation.geometry import Patch
 from wnn2hdl.apps.navigation.matching import Window
@@ -103,11 +102,10 @@ class WeightlessEdges:
             bool ``[12, height, width]``, by binary image, then direction; and bool ``[height, width]``, where
             all pixels of the 3x3 window are valid. Edges are false elsewhere.
         """
-        # Padded, so that windows that reach beyond the picture are left out too.
-        inside = cv2.erode(np.pad(valid, 1).astype(np.uint8), np.ones((3, 3), np.uint8))[1:-1, 1:-1] > 0
-        codes = [np.pad(window_codes(image), 1) for image in binary_images(picture, valid, self.side)]
+        inside = shrunk(valid, 1)
+        codes = _codes(picture, valid, self.side)
         edges = np.stack([one.evaluate(code) for code in codes for one in self.filters])
-        return np.asarray(edges & inside), np.asarray(inside)
+        return np.asarray(edges & inside), inside
 
     def to_json(self) -> dict[str, Any]:
         """A JSON object of all three attributes."""
@@ -166,7 +164,7 @@ def learn(
     ground, inside = rule.extract(picture, valid)
     index = ChannelIndex(ground, inside)
     radius = REGISTER_M / gsd_m
-    map_codes = [np.pad(window_codes(image), 1) for image in binary_images(picture, valid, rule.side)]
+    map_codes = _codes(picture, valid, rule.side)
     pairs = np.zeros((WINDOW_CODES, WINDOW_CODES))
     for sighting in sightings:
         registered = _registered(index, rule, sighting, radius)
@@ -178,12 +176,10 @@ def learn(
             _overlap(column, patch.valid.shape[1], inside.shape[1]),
         )
         under = np.s_[rows.start + row : rows.stop + row, columns.start + column : columns.stop + column]
-        _, shown = rule.extract(patch.image, patch.valid)
-        common = shown[rows, columns] & inside[under]
-        images = binary_images(patch.image, patch.valid, rule.side)
-        for image, codes in zip(images, map_codes, strict=True):
-            seen = np.pad(window_codes(image), 1)[rows, columns][common]
-            both = seen * WINDOW_CODES + codes[under][common]
+        common = shrunk(patch.valid, 1)[rows, columns] & inside[under]
+        patch_codes = _codes(patch.image, patch.valid, rule.side)
+        for seen, codes in zip(patch_codes, map_codes, strict=True):
+            both = seen[rows, columns][common] * WINDOW_CODES + codes[under][common]
             pairs += np.bincount(both, minlength=pairs.size).reshape(pairs.shape)
     if not pairs.any():
         raise InputError(
@@ -191,6 +187,11 @@ def learn(
             hint="train on frames that the map shows, or correct their positions",
         )
     return WeightlessEdges(gsd_m, rule.side, EdgeFilter("learned", _patterns(pairs, rule.east.patterns)))
+
+
+def _codes(picture: NDArray[np.uint8], valid: NDArray[np.bool_], side: int) -> list[NDArray[np.int64]]:
+    """Of each binary image the code of every pixel's window, ``[height, width]``; 0 at the rim."""
+    return [np.pad(window_codes(image), 1) for image in binary_images(picture, valid, side)]
 
 
 def _registered(

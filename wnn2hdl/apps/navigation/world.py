@@ -41,13 +41,11 @@ class WorldMap:
 
     Attributes:
         source: the picture, read when a grid is made of it.
-        shape: rows and columns.
         transform: affine map from (column, row) of pixel corners to the coordinate system; it may be rotated.
         crs: the coordinate system, as anything PROJ takes: WKT, ``"EPSG:4326"``.
     """
 
     source: Source
-    shape: tuple[int, int]
     transform: "Affine"
     crs: str
 
@@ -75,7 +73,7 @@ class WorldMap:
                 value=f"{path} ({shape[1]}x{shape[0]})",
                 hint="cut out the country that was flown over",
             )
-        return cls(source, shape, rasterio.Affine(*place.transform), place.crs)
+        return cls(source, rasterio.Affine(*place.transform), place.crs)
 
     @classmethod
     def of_array(cls, image: NDArray[np.uint8], transform: Iterable[float], crs: str) -> Self:
@@ -87,8 +85,12 @@ class WorldMap:
             crs: the coordinate system.
         """
         rasterio = _rasterio()
-        image_shape = image.shape[0], image.shape[1]
-        return cls(PlainPicture(image), image_shape, rasterio.Affine(*islice(transform, 6)), crs)
+        return cls(PlainPicture(image), rasterio.Affine(*islice(transform, 6)), crs)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.source.height, self.source.width
 
     @property
     def note(self) -> str:
@@ -152,7 +154,7 @@ class WorldMap:
         Raises:
             InputError: the map cannot be read.
         """
-        picture, shown = self._pixels()
+        picture, shown = self._pixels
         found = hashlib.sha256(repr((self.shape, tuple(self.transform), self.crs)).encode())
         found.update(np.ascontiguousarray(picture).data)
         found.update(np.packbits(shown).data)
@@ -195,7 +197,7 @@ class WorldMap:
                 hint="cut out the country that was flown over",
             )
         transform = rasterio.Affine(gsd_m, 0, west, 0, -gsd_m, north)
-        picture, shown = self._pixels()
+        picture, shown = self._pixels
         image = np.zeros((3, rows, columns), dtype=np.uint8)
         valid = np.zeros((rows, columns), dtype=np.uint8)
         geo = {
@@ -245,6 +247,7 @@ class WorldMap:
                 hint="correct its coordinate system or its transform",
             )
 
+    @cached_property
     def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """The picture, uint8 ``[rows, columns, 3]``, and which of its pixels it shows."""
         picture, valid = self.source.read(0, 0, *self.shape)

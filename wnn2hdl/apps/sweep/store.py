@@ -37,7 +37,8 @@ class Results:
         self._places = np.full(size, -1, dtype=np.int64)
         self._journal = Journal(path, identity)
         for place, content in self._journal:
-            self._add(place, _record(content))
+            if (planned := self._open(_record(content).name)) is not None:
+                self._places[planned] = place
 
     def __enter__(self) -> Self:
         return self
@@ -78,9 +79,9 @@ class Results:
             InputError: the disk is full.
         """
         for record in records:
-            position = self._position(record.name)
-            if position is not None and self._places[position] < 0:
-                self._add(self._journal.append(json.dumps(record.to_json()).encode()), record)
+            position = self._open(record.name)
+            if position is not None:
+                self._places[position] = self._journal.append(json.dumps(record.to_json()).encode())
 
     def __iter__(self) -> Iterator[Record]:
         """All results, in the order of the plan."""
@@ -89,10 +90,10 @@ class Results:
     def _read(self, place: int) -> Record:
         return _record(self._journal.read(place))
 
-    def _add(self, place: int, record: Record) -> None:
-        position = self._position(record.name)
-        if position is not None and self._places[position] < 0:
-            self._places[position] = place
+    def _open(self, name: str) -> int | None:
+        """The position of a planned trial without a result."""
+        position = self._position(name)
+        return position if position is not None and self._places[position] < 0 else None
 
 
 def write_table(records: Iterable[Record], path: Path) -> None:

@@ -79,7 +79,7 @@ class _Counting:
         self.done: list[int] = []
 
     def __call__(self, task: Task, windows: Iterable[Window]) -> Iterator[WindowResult]:
-        source = task.open()
+        source = task.source
         for window in windows:
             if len(self.done) == self.stop:
                 raise KeyboardInterrupt

@@ -35,7 +35,7 @@ def small_windows(monkeypatch: pytest.MonkeyPatch) -> None:
 def written(task: Task, run: Runner, folder: Path, **identity: Any) -> tuple[NDArray[np.uint8], Coverage]:
     output = folder / "classes.tif"
     with FinishedWindows(folder / "windows", identity) as kept:
-        coverage = write_classes(task, task.open(), kept, run, output, PALETTE, lambda *_: None)
+        coverage = write_classes(task, task.source, kept, run, output, PALETTE, lambda *_: None)
     with open_classes(output) as dataset:
         assert Georeference.of(dataset) == Georeference()
         return dataset.read(1), coverage
@@ -99,7 +99,7 @@ def test_memory_holds_one_row_of_windows(
     tracemalloc.start()
     with FinishedWindows(tmp_path / "windows", {}) as kept:
         output = tmp_path / "classes.tif"
-        write_classes(task, task.open(), kept, counting(), output, PALETTE, lambda *_: None)
+        write_classes(task, task.source, kept, counting(), output, PALETTE, lambda *_: None)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     # The whole picture is 3 MB, and a neighbourhood takes 200 bytes per pixel of a window.

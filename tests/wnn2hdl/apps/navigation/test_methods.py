@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from wnn2hdl.apps.navigation.binarise import shrunk
 from wnn2hdl.apps.navigation.methods import (
     Describe,
     canny_edges,
     compared_methods,
     grey_levels,
-    shrunk,
     sobel_edges,
 )
 from wnn2hdl.apps.navigation.weightless import by_rule
