@@ -15,7 +15,7 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.equivalence import Circuit
-from wnn2hdl.verify.proof import METHOD, Proof, prove, prove_netlists
+from wnn2hdl.verify.proof import Proof, prove, prove_netlists
 
 _MANY = 1 << 16
 """Vectors above which a circuit is simulated in its own process."""
@@ -27,8 +27,6 @@ class Checked:
 
     Attributes:
         syntheses: by part, ``sobel`` among them.
-        status: ``proved`` or ``failed``.
-        method: of the proof.
         proof_seconds: wall clock of the proofs of Verilog and netlists together.
         vectors: how many vectors each part was simulated on.
         remembered: parts whose simulation passed before, on the same vectors.
@@ -37,13 +35,16 @@ class Checked:
     """
 
     syntheses: Mapping[str, Synthesis]
-    status: str
-    method: str
     proof_seconds: float
     vectors: Mapping[str, int]
     remembered: tuple[str, ...]
     seconds: Mapping[str, float]
     failure: str | None
+
+    @property
+    def status(self) -> str:
+        """``proved`` or ``failed``."""
+        return "failed" if self.failure else "proved"
 
 
 def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> Checked:
@@ -62,8 +63,8 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         ToolError: an outside program is missing or failed.
     """
     simulations = _Simulations(design, files, afresh=afresh)
-    verilog = read_text(files.verilog, "Verilog")
-    emitted = {part: Circuit((verilog,), design.module(part)) for part in design.parts}
+    counted = synthesis_jobs(design, files)
+    emitted = {part: Circuit((counted[part].verilog,), counted[part].top) for part in design.parts}
     jobs: dict[str, Callable[[], Any]] = {
         **simulations.jobs,
         "prove": partial(
@@ -71,7 +72,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
             design.specification,
             {part: circuit for part, circuit in emitted.items() if part in design.specification.claims},
         ),
-        "synthesise": partial(synthesise_all, synthesis_jobs(design, files)),
+        "synthesise": partial(synthesise_all, counted),
     }
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
@@ -98,10 +99,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     proof_seconds = sum(
         max(proof.seconds for proof in found.values()) for found in (results["prove"], mapped)
     )
-    status = "failed" if reason else "proved"
-    return Checked(
-        syntheses, status, METHOD, proof_seconds, vectors, tuple(simulations.passed), seconds, reason
-    )
+    return Checked(syntheses, proof_seconds, vectors, tuple(simulations.passed), seconds, reason)
 
 
 def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[str, Synthesis]:

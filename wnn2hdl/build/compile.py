@@ -1,7 +1,7 @@
 """From a model to a build folder: plan, emit, check, count, report."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -35,7 +35,8 @@ from wnn2hdl.report import (
     report_dict,
     report_markdown,
 )
-from wnn2hdl.synth import OPTIONS, XC7Z020, Synthesis, utilisation
+from wnn2hdl.synth import OPTIONS, XC7Z020, shares
+from wnn2hdl.verify.proof import METHOD
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +185,7 @@ def _report(
         parts=figures,
         count=OPTIONS,
         device=XC7Z020.name,
-        utilisation=_utilisation(checked.syntheses),
+        utilisation={part: shares(result.resources) for part, result in checked.syntheses.items()},
         minimised={
             part: Minimised(
                 cubes_before=cover.cubes_before,
@@ -194,7 +195,7 @@ def _report(
             )
             for part, cover in planned.covers.items()
         },
-        proof=Proof(checked.status, checked.method, checked.proof_seconds, checked.failure),
+        proof=Proof(checked.status, METHOD, checked.proof_seconds, checked.failure),
         care=_care(design, measured.coverage),
         edges=edges,
         accuracy=measured.accuracy,
@@ -243,8 +244,3 @@ def _edges(planned: Plan, options: CompileOptions) -> EdgeFigures:
         f1=agreement.f1,
         imagery=str(options.imagery),
     )
-
-
-def _utilisation(syntheses: Mapping[str, Synthesis]) -> dict[str, dict[str, float]]:
-    shares = {part: asdict(utilisation(result.resources)) for part, result in syntheses.items()}
-    return {part: {k: v for k, v in share.items() if k != "device"} for part, share in shares.items()}

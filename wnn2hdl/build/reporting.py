@@ -17,14 +17,15 @@ from wnn2hdl.build.design import MODEL_FILE, Design
 from wnn2hdl.build.folder import REPORT_FILE, REPORT_HTML, SAMPLE_FILE, failure, require_build
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.dataset import Dataset
+from wnn2hdl.edges import RULES
 from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import model_classifier
-from wnn2hdl.files import read_json, write_text
+from wnn2hdl.files import write_text
 from wnn2hdl.images import Palette, png_bytes, read_rgb, spoken_codes
 from wnn2hdl.ir import Neighbourhood, window_codes
-from wnn2hdl.report import Entry, Picture, build_page, check_report, percent
+from wnn2hdl.report import Entry, Picture, build_page, load_report, percent
 from wnn2hdl.samples import landscape
 
 SAMPLE_SIDE = 256
@@ -34,7 +35,7 @@ SAMPLE_SEED = 1000
 
 _FLAGS = {"care_minimum": "--care-min"}
 _NO_FLAG = frozenset({"sobel_threshold"})
-_EDGE_SETS = frozenset({"boundary", "half-plane", "learned"})
+_EDGE_SETS = frozenset({*RULES, "learned"})
 
 
 def sample_picture(test_set: Dataset | None) -> NDArray[np.uint8]:
@@ -86,9 +87,7 @@ def read_report(folder: Path) -> dict[str, Any]:
 
     A build that is marked as failed is not proved, whatever the report says.
     """
-    path = folder / REPORT_FILE
-    report = read_json(path, "a report")
-    check_report(report, path)
+    report = load_report(folder / REPORT_FILE)
     reason = failure(folder)
     if reason is not None:
         report["proof"] |= {"status": "failed", "failure": reason}

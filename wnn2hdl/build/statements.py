@@ -14,9 +14,8 @@ from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.network import LutNetwork, Mux
 from wnn2hdl.lower.targets import Ingredients
-from wnn2hdl.report import model_figures
-from wnn2hdl.report.build_report import PUBLISHED
-from wnn2hdl.synth import OPTIONS, Synthesis, utilisation
+from wnn2hdl.report import model_figures, published_figures
+from wnn2hdl.synth import OPTIONS, Synthesis, shares
 from wnn2hdl.verify.specify import care_sets
 
 _SOURCES = frozenset(
@@ -107,12 +106,7 @@ def false_statements(
         "mode": design.mode,
         "parts": {part: asdict(result.resources) for part, result in syntheses.items()},
         "count": OPTIONS,
-        "utilisation": {
-            part: {
-                name: share for name, share in asdict(utilisation(x.resources)).items() if name != "device"
-            }
-            for part, x in syntheses.items()
-        },
+        "utilisation": {part: shares(result.resources) for part, result in syntheses.items()},
         "care": {
             "codes": None if care is None else int(care.sum()),
             "of": None if care is None else len(care),
@@ -127,7 +121,7 @@ def false_statements(
         },
         "options": {"style": design.style, "name": design.name, "mode": design.mode},
         "hashes": {"model": design.model.digest()},
-        "published": [asdict(figure) | {"measured_here": False} for figure in PUBLISHED],
+        "published": published_figures(),
     }
     problems = list(_contradictions("", report, json.loads(json.dumps(found))))
     extra = [f"parts.{part}" for part in report["parts"] if part not in syntheses]

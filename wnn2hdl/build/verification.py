@@ -10,9 +10,8 @@ from wnn2hdl.build.folder import REPORT_FILE, failure, require_build
 from wnn2hdl.build.statements import false_statements, foreign_circuit, foreign_files, foreign_text
 from wnn2hdl.emit import check as check_manifest
 from wnn2hdl.errors import CheckError, InputError, ModelFileError, ToolError
-from wnn2hdl.files import read_json
 from wnn2hdl.progress import Progress
-from wnn2hdl.report import check_report
+from wnn2hdl.report import load_report
 
 
 def open_build(folder: Path) -> tuple[Design, Files, dict[str, Any]]:
@@ -24,9 +23,7 @@ def open_build(folder: Path) -> tuple[Design, Files, dict[str, Any]]:
     """
     require_build(folder)
     design = Design.load(folder)
-    path = folder / REPORT_FILE
-    report = read_json(path, "a report")
-    check_report(report, path)
+    report = load_report(folder / REPORT_FILE)
     return design, Files.of(design, folder), report
 
 

@@ -13,8 +13,6 @@ from rich.table import Table
 
 from wnn2hdl.cli.terminal import say
 
-Command = Callable[..., Any]
-
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on stdout and nothing else."
 )

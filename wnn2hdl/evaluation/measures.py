@@ -6,6 +6,7 @@ Every figure is a ratio; one that would be 0/0 is undefined, not 0: NaN in array
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,24 +90,39 @@ def interval(confusions: NDArray[np.int64], measure: Measure, seed: int) -> tupl
     """
     if len(confusions) < 2:
         return None
-    from scipy.stats import bootstrap
 
     def statistic(images: NDArray[np.int64], axis: int) -> NDArray[np.float64]:
         return measure(confusions[images].sum(axis=axis % images.ndim))
 
     # A resample without a figure makes the bounds NaN, of which SciPy warns.
     with warnings.catch_warnings(action="ignore"):
-        found = bootstrap(
-            (np.arange(len(confusions)),),
-            statistic,
-            n_resamples=RESAMPLES,
-            batch=100,
-            confidence_level=CONFIDENCE,
-            method="percentile",
-            rng=np.random.default_rng(seed),
-        ).confidence_interval
-    low, high = defined(found.low), defined(found.high)
+        bounds = percentile_bootstrap((np.arange(len(confusions)),), statistic, seed)
+    low, high = (defined(bound) for bound in bounds)
     return None if low is None or high is None else (low, high)
+
+
+def percentile_bootstrap(
+    samples: tuple[NDArray[Any], ...], statistic: Callable[..., NDArray[np.float64]], seed: int
+) -> tuple[float, float]:
+    """Low and high of the percentile bootstrap of scipy.stats with `RESAMPLES` resamples, at `CONFIDENCE`.
+
+    Args:
+        samples: each is drawn again by itself.
+        statistic: of resamples, along a keyword ``axis``.
+        seed: of the draw.
+    """
+    from scipy.stats import bootstrap
+
+    found = bootstrap(
+        samples,
+        statistic,
+        n_resamples=RESAMPLES,
+        batch=100,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        rng=np.random.default_rng(seed),
+    ).confidence_interval
+    return float(found.low), float(found.high)
 
 
 def wilson(confusion: NDArray[np.int64]) -> tuple[float, float]:

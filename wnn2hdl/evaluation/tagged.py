@@ -12,7 +12,7 @@ from wnn2hdl.dataset import cleared_classes
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import PictureClassifier
-from wnn2hdl.evaluation.measures import CONFIDENCE, RESAMPLES
+from wnn2hdl.evaluation.measures import percentile_bootstrap
 from wnn2hdl.images import by_stem, read_picture, whole_windows
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.raster import Reading
@@ -182,15 +182,4 @@ def _interval(
 ) -> tuple[float, float] | None:
     if min(len(positive), len(negative)) < 2:
         return None
-    from scipy.stats import bootstrap
-
-    found = bootstrap(
-        (positive, negative),
-        _auc,
-        n_resamples=RESAMPLES,
-        batch=100,
-        confidence_level=CONFIDENCE,
-        method="percentile",
-        rng=np.random.default_rng(seed),
-    ).confidence_interval
-    return float(found.low), float(found.high)
+    return percentile_bootstrap((positive, negative), _auc, seed)

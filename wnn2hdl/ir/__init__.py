@@ -1,6 +1,6 @@
 """The contract between stages: encoders, models, tables, covers, LUT networks, windows and their files."""
 
-from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits, spread_codes
 from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
 from wnn2hdl.ir.encoder import (
     CHANNELS,
@@ -72,6 +72,7 @@ __all__ = [
     "pack_contents",
     "picture_encoder",
     "pixel_encoder",
+    "spread_codes",
     "unpack_contents",
     "window_codes",
 ]

@@ -4,6 +4,8 @@ A *code* is an unsigned integer whose bit ``i`` (weight ``2**i``) is input ``i``
 stage uses this order, and so does the Verilog: ``code[i]`` is input ``i``.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -44,6 +46,11 @@ def codes_to_bits(codes: ArrayLike, width: int) -> NDArray[np.bool_]:
     for position in range(width):
         bits[..., position] = values >> position & 1
     return bits
+
+
+def spread_codes(positions: Sequence[int]) -> NDArray[np.int64]:
+    """Every code of a few bits, ascending, with bit ``i`` moved to ``positions[i]``: int64 ``[2**len]``."""
+    return codes_to_bits(np.arange(1 << len(positions)), len(positions)) @ (1 << np.array(positions))
 
 
 def bits_to_codes(bits: ArrayLike) -> NDArray[np.int64]:

@@ -27,12 +27,10 @@ class Shared:
     Attributes:
         circuit: reads of its one input port only what is left.
         read: which bits of the port of the circuit before these are, ascending.
-        tables_before: tables before sharing.
     """
 
     circuit: Circuit
     read: tuple[int, ...]
-    tables_before: int
 
 
 def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shared:
@@ -159,8 +157,7 @@ def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
     result = replace(
         circuit, inputs=(replace(port, width=max(len(read), 1)),), nodes=tuple(moved_nodes), care=()
     )
-    tables = sum(isinstance(node, Table) for node in circuit.nodes)
-    return Shared(result, tuple(read), tables)
+    return Shared(result, tuple(read))
 
 
 def _bits(word: Word) -> list[Slice]:

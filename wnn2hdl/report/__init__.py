@@ -12,6 +12,7 @@ from wnn2hdl.report.build_report import (
     PartFigures,
     Proof,
     PublishedFigure,
+    published_figures,
     report_dict,
 )
 from wnn2hdl.report.gate import Check, Limits, run_gate
@@ -20,7 +21,7 @@ from wnn2hdl.report.index_page import Entry, Exhibit, index_page, is_index
 from wnn2hdl.report.markdown import report_markdown
 from wnn2hdl.report.model_figures import model_figures
 from wnn2hdl.report.page import Picture, build_page, percent
-from wnn2hdl.report.schemas import check_report
+from wnn2hdl.report.schemas import check_report, load_report
 
 __all__ = [
     "PUBLISHED",
@@ -46,8 +47,10 @@ __all__ = [
     "gate_markdown",
     "index_page",
     "is_index",
+    "load_report",
     "model_figures",
     "percent",
+    "published_figures",
     "read_baseline",
     "report_dict",
     "report_markdown",

@@ -211,5 +211,10 @@ def report_dict(report: BuildReport) -> dict[str, Any]:
     return {
         "version": REPORT_VERSION,
         **fields,
-        "published": [asdict(figure) | {"measured_here": False} for figure in PUBLISHED],
+        "published": published_figures(),
     }
+
+
+def published_figures() -> list[dict[str, Any]]:
+    """`PUBLISHED`, as reports list them."""
+    return [asdict(figure) | {"measured_here": False} for figure in PUBLISHED]

@@ -10,6 +10,14 @@ from typing import Any
 import jsonschema
 
 from wnn2hdl.errors import ModelFileError
+from wnn2hdl.files import read_json
+
+
+def load_report(path: Path) -> dict[str, Any]:
+    """The report of a file; raises ModelFileError if it is missing or damaged, and as `check_report`."""
+    report = read_json(path, "a report")
+    check_report(report, path)
+    return report
 
 
 def check_report(report: Mapping[str, Any], path: Path) -> None:

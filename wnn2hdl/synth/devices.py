@@ -1,6 +1,6 @@
 """What a device has, and the share of it that a circuit takes."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from wnn2hdl.synth.resources import Resources
 
@@ -56,3 +56,8 @@ def utilisation(resources: Resources, device: Device = XC7Z020) -> Utilisation:
         bram36=100 * resources.bram36 / device.bram36,
         dsp=100 * resources.dsp / device.dsp,
     )
+
+
+def shares(resources: Resources) -> dict[str, float]:
+    """The shares of `utilisation` by name, as reports list them."""
+    return {name: share for name, share in asdict(utilisation(resources)).items() if name != "device"}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import ColourHistogram, Dataset, colour_histogram
 from wnn2hdl.encode import high_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, bits_to_codes, codes_to_bits
+from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, bits_to_codes, spread_codes
 from wnn2hdl.lower.table import care_set, pixel_table
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.progress import Progress, reported
@@ -235,8 +235,7 @@ def circuit_model(model: WisardModel, network: LutNetwork, training: dict[str, f
     read |= {signal for _, signal in network.outputs}
     # A constant circuit reads nothing, and a model reads one bit at least.
     kept = [x for x, name in enumerate(network.inputs) if name in read] or [0]
-    codes = codes_to_bits(np.arange(1 << len(kept)), len(kept)) @ (1 << np.array(kept))
     # Outside of the care set a circuit of several outputs may name a class that does not exist.
-    answers = np.minimum(bits_to_codes(network.evaluate(codes)), len(model.classes) - 1)
+    answers = np.minimum(bits_to_codes(network.evaluate(spread_codes(kept))), len(model.classes) - 1)
     encoder = BitSelect(tuple(model.encoder.names[x] for x in kept))
     return look_up_table(encoder, model.classes, answers, {**model.training, **training})

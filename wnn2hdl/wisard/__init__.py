@@ -4,12 +4,19 @@ from typing import TYPE_CHECKING, Any
 
 from wnn2hdl.wisard.bleaching import choose_bleaching
 from wnn2hdl.wisard.mapping import draw_mapping
-from wnn2hdl.wisard.pixels import PixelClassifier, train_histogram
+from wnn2hdl.wisard.pixels import PixelClassifier, require_every_class, train_histogram
 
 if TYPE_CHECKING:
     from wnn2hdl.wisard.classifier import WisardClassifier
 
-__all__ = ["PixelClassifier", "WisardClassifier", "choose_bleaching", "draw_mapping", "train_histogram"]
+__all__ = [
+    "PixelClassifier",
+    "WisardClassifier",
+    "choose_bleaching",
+    "draw_mapping",
+    "require_every_class",
+    "train_histogram",
+]
 
 
 def __getattr__(name: str) -> Any:

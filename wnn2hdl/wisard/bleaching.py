@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import codes_to_bits
-from wnn2hdl.wisard.rams import addresses, chunks, count, winners
+from wnn2hdl.wisard.rams import addresses, chunks, class_counts, winners
 
 CANDIDATES = 64
 """Thresholds tried at most; answers change only at counts that occur, and these are quantiles of those."""
@@ -48,13 +48,13 @@ def choose_bleaching(histograms: NDArray[np.int64], mapping: NDArray[np.int64]) 
     where = addresses(codes_to_bits(codes, width), mapping)
     seen = histograms[:, :, codes]
     total = seen.sum(axis=0)
-    thresholds = candidates(_counts(total, where, mapping.shape[2]))
+    thresholds = candidates(class_counts(total, where, mapping.shape[2]))
     folds = [total] if len(seen) == 1 else [seen[f::FOLDS].sum(axis=0) for f in range(min(FOLDS, len(seen)))]
     right = np.zeros(len(thresholds), dtype=np.int64)
     for held_out in folds:
         training = total - held_out if len(folds) > 1 else total
         scaled = _scaled(thresholds, int(training.sum()), int(total.sum()))
-        winner = winners(_counts(training, where, mapping.shape[2]), where, scaled)
+        winner = winners(class_counts(training, where, mapping.shape[2]), where, scaled)
         for index, pixels in enumerate(held_out):
             right += (winner == index) @ pixels
     return int(thresholds[right.argmax()])
@@ -88,11 +88,4 @@ def _scaled(thresholds: NDArray[np.int64], part: int, whole: int) -> NDArray[np.
     # Python's integers, since the product of two counts of a large scene overflows 64 bits.
     return np.array(
         [max(1, -(-threshold * part // whole)) for threshold in thresholds.tolist()], dtype=np.int64
-    )
-
-
-def _counts(histogram: NDArray[np.int64], where: NDArray[np.int64], address_bits: int) -> NDArray[np.int64]:
-    """RAM counts of a histogram ``[classes, S]`` over the patterns of ``where``."""
-    return np.stack(
-        [count(where[owner % len(where)], address_bits, pixels) for owner, pixels in enumerate(histogram)]
     )

@@ -1,5 +1,6 @@
 """Pixel classifiers: trained on histograms of codes, answering from a table of all codes."""
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Encoder, WisardModel, codes_to_bits, pixel_encoder
 from wnn2hdl.ir.model import check_size
-from wnn2hdl.wisard.rams import addresses, count
+from wnn2hdl.wisard.rams import addresses, class_counts
 
 
 def train_histogram(
@@ -42,18 +43,20 @@ def train_histogram(
         raise InputError(
             "too large a model", value=error, hint="choose fewer RAMs or address bits"
         ) from error
-    for name, pixels in zip(classes, histogram, strict=True):
-        if not pixels.any():
+    require_every_class(classes, (pixels.any() for pixels in histogram))
+    codes = np.flatnonzero(histogram.any(axis=0))
+    where = addresses(codes_to_bits(codes, encoder.width), mapping)
+    counts = class_counts(histogram[:, codes], where, mapping.shape[2])
+    return WisardModel(encoder, classes, mapping, counts, bleaching, training or {})
+
+
+def require_every_class(classes: Sequence[str], seen: Iterable[bool | np.bool_]) -> None:
+    """Raise InputError unless each class, in the order of ``classes``, was ``seen`` in training pixels."""
+    for name, found in zip(classes, seen, strict=True):
+        if not found:
             raise InputError(
                 "a class has no training pixels", value=name, hint="give images that show every class"
             )
-    codes = np.flatnonzero(histogram.any(axis=0))
-    where = addresses(codes_to_bits(codes, encoder.width), mapping)
-    counts = [
-        count(where[owner % len(where)], mapping.shape[2], pixels[codes])
-        for owner, pixels in enumerate(histogram)
-    ]
-    return WisardModel(encoder, classes, mapping, np.stack(counts), bleaching, training or {})
 
 
 class PixelClassifier:

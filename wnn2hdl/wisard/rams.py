@@ -55,6 +55,24 @@ def count(
     return np.stack([np.bincount(ram, weights, size).astype(np.int64) for ram in where])
 
 
+def class_counts(
+    histogram: NDArray[np.int64], where: NDArray[np.int64], address_bits: int
+) -> NDArray[np.int64]:
+    """RAM counts of each class.
+
+    Args:
+        histogram: int64 ``[classes, S]``, how often each pattern occurs in each class.
+        where: int64 ``[m, k, S]``, the patterns' addresses.
+        address_bits: n.
+
+    Returns:
+        int64 ``[classes, k, 2**n]``.
+    """
+    return np.stack(
+        [count(where[owner % len(where)], address_bits, pixels) for owner, pixels in enumerate(histogram)]
+    )
+
+
 def responses(fires: NDArray[np.bool_], where: NDArray[np.int64]) -> NDArray[np.int64]:
     """Firing RAMs of each discriminator.
 

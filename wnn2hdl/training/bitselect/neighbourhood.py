@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, WisardModel, bits_to_codes, codes_to_bits
+from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, WisardModel, bits_to_codes, codes_to_bits, spread_codes
 from wnn2hdl.training.bitselect.cascade import find_cascade
 from wnn2hdl.training.bitselect.drift import WIDTH
 from wnn2hdl.training.bitselect.mass import CUBE_SHARE, POOL, WHOLE
 from wnn2hdl.training.bitselect.reference import fit_window_reference
 from wnn2hdl.training.bitselect.select import look_up_table
+from wnn2hdl.wisard import require_every_class
 
 SIZES = (3, 5)
 
@@ -121,11 +122,7 @@ def _check(windows: NDArray[np.uint8], labels: NDArray[np.uint8], classes: tuple
         raise InputError(
             "a neighbourhood has 3x3 or 5x5 pixels", value=windows.shape[1], hint="ask for 3 or 5"
         )
-    for index, name in enumerate(classes):
-        if not (labels == index).any():
-            raise InputError(
-                "a class has no training pixels", value=name, hint="give images that show every class"
-            )
+    require_every_class(classes, ((labels == index).any() for index in range(len(classes))))
 
 
 def _places(size: int) -> tuple[tuple[int, int], ...]:
@@ -184,5 +181,4 @@ def _tap(row: int, column: int, table: NDArray[np.bool_]) -> Tap:
     """A tap that reads only the bits of `POOL` on which a table depends."""
     codes = np.arange(1 << POOL.width)
     used = [bit for bit in range(POOL.width) if (table[codes] != table[codes ^ 1 << bit]).any()] or [0]
-    narrow = codes_to_bits(np.arange(1 << len(used)), len(used)) @ (1 << np.array(used))
-    return Tap.of(row, column, BitSelect(tuple(POOL.bits[bit] for bit in used)), table[narrow])
+    return Tap.of(row, column, BitSelect(tuple(POOL.bits[bit] for bit in used)), table[spread_codes(used)])

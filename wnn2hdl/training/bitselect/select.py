@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, Encoder, WisardModel, codes_to_bits
+from wnn2hdl.ir import BitSelect, Encoder, WisardModel, spread_codes
 from wnn2hdl.training.bitselect.cascade import Cascade, find_cascade
 from wnn2hdl.training.bitselect.drift import LEAST_SHARE, Colours, blurred, main_drift, merged, unpacked
 from wnn2hdl.training.bitselect.mass import POOL, signed_mass
 from wnn2hdl.training.bitselect.reference import fit_reference
+from wnn2hdl.wisard import require_every_class
 
 MOST_LUTS = 3
 
@@ -68,13 +69,11 @@ def select_bits(
     mass = signed_mass(spread, fit_reference(spread))
     cascade = find_cascade(mass, luts, seed, progress)
     bits = cascade.bits
-    codes = np.arange(1 << len(bits))
-    pool_codes = codes_to_bits(codes, len(bits)) @ (1 << np.array(bits))
     training = {"method": "bit selection", "luts": luts, "seed": seed, "images": len(images)}
     return look_up_table(
         BitSelect(tuple(POOL.bits[x] for x in bits)),
         classes,
-        cascade.evaluate(pool_codes).astype(np.int64),
+        cascade.evaluate(spread_codes(bits)).astype(np.int64),
         training | {"cascade": _names(cascade)},
     )
 
@@ -97,11 +96,9 @@ def look_up_table(
 
 def _training_colours(images: Sequence[Histogram], classes: tuple[str, ...]) -> Colours:
     """All images' colours together, blurred by the drift of the background between them."""
-    for index, name in enumerate(classes):
-        if not any(image.counts[index].any() for image in images):
-            raise InputError(
-                "a class has no training pixels", value=name, hint="give images that show every class"
-            )
+    require_every_class(
+        classes, (any(image.counts[i].any() for image in images) for i in range(len(classes)))
+    )
     means = [
         image.counts[0] @ unpacked(image.colours.astype(np.int64)) / image.counts[0].sum()
         for image in images
