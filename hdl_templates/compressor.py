@@ -1,3 +1,5 @@
+# amaranth: UnusedElaboratable=no
+# A part of which the text is known already is made for its ports alone.
 """Counting ones with 6-input LUTs: compressors, and the tree of them that adds up columns of bits.
 
 Each output of a compressor is a function of at most six bits, so one LUT6. A synthesiser that flattens the
@@ -10,8 +12,7 @@ from amaranth.lib.wiring import In, Out
 
 from hdl_templates.hierarchy import Part, place
 from hdl_templates.ports import named
-
-LUT_INPUTS = 6
+from wnn2hdl.ir import LUT_INPUTS
 
 Columns = dict[int, list[Value]]
 """Bits to be added: ``columns[k]`` holds bits of weight ``2**k``."""

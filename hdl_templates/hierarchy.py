@@ -49,16 +49,18 @@ class Emission:
 
     def instance(self, part: Part) -> Instance:
         """An instance of the part's module, connected to the part's members."""
-        # Elaborated here so that its own parts are found, before it, and Amaranth sees that it is in use.
-        Fragment.get(part, self)
-        self.parts.setdefault(self.module(part), part)
+        name = self.module(part)
+        if name not in self.parts:
+            # Elaborated here so that its own parts are found, before it.
+            Fragment.get(part, self)
+            self.parts[name] = part
         ports = {
             f"{'i' if member.flow == wiring.In else 'o'}_{name}": getattr(part, name)
             for name, member in part.signature.members.items()
         }
         if part.clocked:
             ports["i_clk"] = ClockSignal()
-        return Instance(self.module(part), **ports)
+        return Instance(name, **ports)
 
 
 def place(m: Module, name: str, part: Part, platform: object) -> None:

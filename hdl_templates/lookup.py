@@ -44,7 +44,7 @@ def draw_network(
     for cell in network.cells:
         if cell.name not in reads:
             continue
-        pins = [signals[name] for name in _pins(cell)]
+        pins = [signals[name] for name in cell.reads]
         if not isinstance(platform, Emission):
             value = _simulated(cell, pins)
             # A signal costs Amaranth's simulator more than a look-up; but others may read an output often.
@@ -76,12 +76,8 @@ def _reads(network: LutNetwork) -> Counter[str]:
     counts = Counter(signal for _, signal in network.outputs)
     for cell in reversed(network.cells):
         if cell.name in counts:
-            counts.update(_pins(cell))
+            counts.update(cell.reads)
     return counts
-
-
-def _pins(cell: Lut | MuxCell) -> tuple[str, ...]:
-    return cell.inputs if isinstance(cell, Lut) else (cell.low, cell.high, cell.select)
 
 
 def _simulated(cell: Lut | MuxCell, pins: Sequence[Value]) -> Value:

@@ -7,6 +7,8 @@ from amaranth.hdl import Shape
 from amaranth.lib.wiring import Component, In
 from numpy.typing import NDArray
 
+from wnn2hdl.ir.wires import word_values
+
 
 def port_widths(component: Component) -> tuple[dict[str, int], dict[str, int]]:
     """Width in bits of each input and of each output, in the order of declaration."""
@@ -40,13 +42,8 @@ def pack(
                 raise ValueError(
                     f"port {name} takes bools [vectors, {width}], not {given[name].dtype} {given[name].shape}"
                 )
-        packed.append({name: _numbers(given[name]) for name in known})
+        packed.append({name: word_values(given[name]) for name in known})
     lengths = {len(values) for values in (*inputs.values(), *outputs.values())}
     if len(lengths) != 1:
         raise ValueError(f"ports are given different numbers of vectors: {sorted(lengths)}")
     return packed[0], packed[1]
-
-
-def _numbers(bits: NDArray[np.bool_]) -> list[int]:
-    packed = np.packbits(bits, axis=1, bitorder="little")
-    return [int.from_bytes(row.tobytes(), "little") for row in packed]

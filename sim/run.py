@@ -11,8 +11,9 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import get_runner
 
 from sim.bench import VECTORS
+from wnn2hdl.ir.wires import word_values
 from wnn2hdl.tools import find_icarus, find_verilator
-from wnn2hdl.verify.specification import Claim, Samples, word_values
+from wnn2hdl.verify.specification import Claim, Samples
 
 SimulatorName = Literal["icarus", "verilator"]
 

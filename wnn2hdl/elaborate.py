@@ -17,7 +17,7 @@ from hdl_templates.winner import winner_network
 from wnn2hdl.ir import LutNetwork, Style
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
-from wnn2hdl.ir.wires import Slice, Word, width_of
+from wnn2hdl.ir.wires import Word, single_bits, width_of
 
 
 def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
@@ -127,7 +127,7 @@ class _Scope:
 def _read_words(node: Node) -> tuple[Word, ...]:
     """The words whose bits the hardware of a node reads; a function may ignore some of its inputs."""
     if isinstance(node, Table) and isinstance(node.function, LutNetwork):
-        bits = [Slice(part.net, part.low + i) for part in node.word for i in range(part.width)]
+        bits = single_bits(node.word)
         unread = set(unread_inputs(node.function))
         return (tuple(bit for position, bit in enumerate(bits) if position not in unread),)
     if isinstance(node, Threshold) and node.constant is not None:

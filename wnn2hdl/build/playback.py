@@ -18,11 +18,12 @@ from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.images import read_rgb
 from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS
 from wnn2hdl.ir.pixels import pixel_bits
+from wnn2hdl.ir.wires import word_values
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
 from wnn2hdl.verify.compiled import run_compiled
 from wnn2hdl.verify.simulation import simulate
-from wnn2hdl.verify.specification import Samples, word_values
+from wnn2hdl.verify.specification import Samples
 
 SimulatorName = Literal["amaranth", "verilator", "icarus"]
 

@@ -12,7 +12,7 @@ from wnn2hdl.build.folder import REPORT_FILE
 from wnn2hdl.edges import RULES
 from wnn2hdl.emit import MANIFEST_NAME
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.network import LutNetwork, Mux
+from wnn2hdl.ir.network import LutNetwork
 from wnn2hdl.lower.targets import Ingredients
 from wnn2hdl.report import model_figures, published_figures
 from wnn2hdl.synth import OPTIONS, Synthesis, shares
@@ -166,5 +166,5 @@ def _unread_cells(network: LutNetwork) -> list[str]:
         if cell.name not in needed:
             unread.append(cell.name)
         else:
-            needed |= {cell.low, cell.high, cell.select} if isinstance(cell, Mux) else set(cell.inputs)
+            needed.update(cell.reads)
     return unread[::-1]

@@ -85,3 +85,8 @@ def _render_piece(piece: Piece, widths: dict[str, int]) -> str:
     if width == widths[net]:
         return net
     return f"{net}[{low}]" if width == 1 else f"{net}[{low + width - 1}:{low}]"
+
+
+def range_of(width: int) -> str:
+    """The range in a declaration of a net of this many bits, with a space after it; empty for one bit."""
+    return f"[{width - 1}:0] " if width > 1 else ""

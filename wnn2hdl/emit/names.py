@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from wnn2hdl.emit.expression import Piece, pieces
-from wnn2hdl.emit.netlist import Bit, BitVector, Cell, Module
+from wnn2hdl.emit.netlist import CELL_OUTPUTS, Bit, BitVector, Cell, Module
 from wnn2hdl.ir.identifiers import RESERVED
 
 _NO_LETTER = re.compile(r"\W", re.ASCII)
@@ -31,9 +31,11 @@ class Names:
         self.widths = {port: len(bits) for port, bits in (*module.inputs.items(), *module.outputs.items())}
         self.aliases: dict[str, Piece] = {}
         self.instances: dict[Cell, str] = {}
+        self._instance_names: set[str] = set()
         for cell in module.cells:
             if cell.is_instance:
                 self.instances[cell] = self._plain(cell.name)
+                self._instance_names.add(self.instances[cell])
         self._by_bits: dict[BitVector, str] = {}
         # A name that Amaranth numbered, as in ``total$7``, is used only if there is no other.
         for name in sorted(module.nets, key=lambda name: "$" in name):
@@ -96,7 +98,7 @@ class Names:
         if not base[0].isalpha():
             base = plain = f"n{base}"
         number = 0
-        while plain in self.widths or plain in self.instances.values() or plain.lower() in RESERVED:
+        while plain in self.widths or plain in self._instance_names or plain.lower() in RESERVED:
             number += 1
             plain = f"{base}_{number}"
         return plain
@@ -112,7 +114,7 @@ def count_reads(module: Module) -> Counter[Bit]:
 
 
 def _is_vendor_cell(cell: Cell) -> bool:
-    return set(cell.outputs) <= {"O", "O5", "O6"}
+    return set(cell.outputs) <= CELL_OUTPUTS
 
 
 def _constant(bit: str) -> Piece:

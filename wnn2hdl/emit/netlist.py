@@ -22,7 +22,7 @@ BitVector = tuple[Bit, ...]
 """Bits side by side, the least significant first."""
 
 _SECONDS = 120.0
-_CELL_OUTPUTS = frozenset({"O", "O5", "O6"})
+CELL_OUTPUTS = frozenset({"O", "O5", "O6"})
 """Output pins of the vendor's look-up tables and multiplexers (UG953), whose modules are not read."""
 
 
@@ -138,7 +138,7 @@ def _cell(name: str, data: Mapping[str, Any], modules: Mapping[str, Any]) -> Cel
     elif "port_directions" in data:
         outputs = {pin for pin, direction in data["port_directions"].items() if direction == "output"}
     else:
-        outputs = set(_CELL_OUTPUTS)
+        outputs = set(CELL_OUTPUTS)
     return Cell(
         name,
         kind,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hdl_templates.hierarchy import Part
 from hdl_templates.vectors import pack, port_widths
+from wnn2hdl.emit.expression import range_of
 
 Arrays = Mapping[str, NDArray[np.bool_]]
 """Values of ports by name: bool ``[vectors, width]``, the least significant bit first."""
@@ -70,10 +71,10 @@ def testbench(part: Part, *, name: str, count: int, vectors_file: str, sources: 
     connections = ",\n".join(f"        .{port}({port})" for port in (*clock, *inputs, *outputs))
     wires = "\n".join(
         ["    reg clk = 1'b0;" for _ in clock]
-        + [f"    wire {_range(width)}{port} = {applied}[{fields[port]}];" for port, width in inputs.items()]
-        + [f"    wire {_range(width)}{port};" for port, width in outputs.items()]
+        + [f"    wire {range_of(width)}{port} = {applied}[{fields[port]}];" for port, width in inputs.items()]
+        + [f"    wire {range_of(width)}{port};" for port, width in outputs.items()]
         + [
-            f"    wire {_range(width)}{port}_expected = vector[{fields[port]}];"
+            f"    wire {range_of(width)}{port}_expected = vector[{fields[port]}];"
             for port, width in outputs.items()
         ]
     )
@@ -128,7 +129,3 @@ def _fields(widths: Mapping[str, int], total: int) -> dict[str, str]:
         fields[port] = f"{top - 1}:{top - width}" if width > 1 else str(top - 1)
         top -= width
     return fields
-
-
-def _range(width: int) -> str:
-    return f"[{width - 1}:0] " if width > 1 else ""

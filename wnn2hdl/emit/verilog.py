@@ -7,7 +7,7 @@ from amaranth.hdl import ClockDomain, Fragment
 from amaranth.lib.wiring import Component
 
 from hdl_templates.hierarchy import Emission, Part
-from wnn2hdl.emit.expression import constant
+from wnn2hdl.emit.expression import constant, range_of
 from wnn2hdl.emit.netlist import Module, read_modules
 from wnn2hdl.emit.packing import packed
 from wnn2hdl.emit.statements import UNUSED, Statement, statements
@@ -40,7 +40,8 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
     Fragment.get(part, emission)
     parts = {**emission.parts, emission.module(part): part}
     modules = read_modules(
-        [_rtlil(inner, name, prefix) for name, inner in parts.items()],
+        # Each knows all parts, so that none is elaborated once more for an instance of it.
+        [_rtlil(inner, name, Emission(prefix, dict(parts))) for name, inner in parts.items()],
         {name: list(inner.signature.members) for name, inner in parts.items()},
     )
     if foreign := modules.keys() - parts.keys():
@@ -53,11 +54,11 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
     )
 
 
-def _rtlil(component: Component, name: str, prefix: str) -> str:
+def _rtlil(component: Component, name: str, emission: Emission) -> str:
     text: str = rtlil.convert(
         component,
         name=name,
-        platform=Emission(prefix),
+        platform=emission,
         emit_src=False,
         missing_domain=lambda domain: ClockDomain(domain, reset_less=True),
     )
@@ -74,9 +75,9 @@ def _text(module: Module) -> str:
     """The module: statements level by level, each wire declared where it is driven, registers first."""
     found, widths = statements(module)
     registers = {statement.drives[0]: statement for statement in found if statement.clock}
-    ports = [f"    input  wire {_range(len(bits))}{port}" for port, bits in module.inputs.items()]
+    ports = [f"    input  wire {range_of(len(bits))}{port}" for port, bits in module.inputs.items()]
     ports += [
-        f"    output {'reg ' if port in registers else 'wire'} {_range(len(bits))}{port}"
+        f"    output {'reg ' if port in registers else 'wire'} {range_of(len(bits))}{port}"
         for port, bits in module.outputs.items()
     ]
     levels = _levels(found)
@@ -84,7 +85,7 @@ def _text(module: Module) -> str:
         (statement for statement in found if not statement.clock),
         key=lambda statement: (UNUSED in statement.drives, levels[statement.drives[0]]),
     )
-    lines = [f"    reg {_range(widths[net])}{net};" for net in registers if net not in module.outputs]
+    lines = [f"    reg {range_of(widths[net])}{net};" for net in registers if net not in module.outputs]
     lines += [_line(statement, widths, module) for statement in ordered]
     for net, register in registers.items():
         if register.initial is not None:
@@ -96,11 +97,11 @@ def _text(module: Module) -> str:
 def _line(statement: Statement, widths: Mapping[str, int], module: Module) -> str:
     if statement.head:
         declared = [
-            f"    wire {_range(widths[net])}{net};" for net in statement.drives if net not in module.outputs
+            f"    wire {range_of(widths[net])}{net};" for net in statement.drives if net not in module.outputs
         ]
         return "\n".join([*declared, _wrapped(f"    {statement.head} (", f"{statement.text})")])
     (net,) = statement.drives
-    start = "assign " if net in module.outputs else f"wire {_range(widths[net])}"
+    start = "assign " if net in module.outputs else f"wire {range_of(widths[net])}"
     return _wrapped(f"    {start}{net} = ", statement.text)
 
 
@@ -138,7 +139,3 @@ def _wrapped(start: str, rest: str) -> str:
         else:
             line += f" {chunk}"
     return "\n".join([*lines, f"{line};"])
-
-
-def _range(width: int) -> str:
-    return f"[{width - 1}:0] " if width > 1 else ""

@@ -3,13 +3,14 @@
 Every figure is a ratio; one that would be 0/0 is undefined, not 0: NaN in arrays, None where one is returned.
 """
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from wnn2hdl.muted import muted
 
 Measure = Callable[[NDArray[np.int64]], NDArray[np.float64]]
 """Of confusion matrices ``[..., classes, classes]``, true class by row, a figure each ``[...]``."""
@@ -95,7 +96,7 @@ def interval(confusions: NDArray[np.int64], measure: Measure, seed: int) -> tupl
         return measure(confusions[images].sum(axis=axis % images.ndim))
 
     # A resample without a figure makes the bounds NaN, of which SciPy warns.
-    with warnings.catch_warnings(action="ignore"):
+    with muted():
         bounds = percentile_bootstrap((np.arange(len(confusions)),), statistic, seed)
     low, high = (defined(bound) for bound in bounds)
     return None if low is None or high is None else (low, high)

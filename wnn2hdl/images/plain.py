@@ -1,7 +1,6 @@
 """Plain pictures, decoded by Pillow: those of 8 bits about which no other file or tag says anything."""
 
 import struct
-import warnings
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageFile, TiffImagePlugin, UnidentifiedImageError
 
 from wnn2hdl.errors import InputError
+from wnn2hdl.muted import muted
 from wnn2hdl.raster.formats import PLAIN_FORMATS, TIFF
 from wnn2hdl.raster.reading import MOST_PIXELS, ORIENTATION_TAG, require_decodable
 from wnn2hdl.raster.validity import AlphaMeaning, require_mask
@@ -90,7 +90,7 @@ def plain_head(path: Path, kind: str) -> PlainHead | None:
         if picture.format == "BMP" and picture.mode == "1":
             # Pillow takes indices of 8 bits for single bits where two colours are black and white.
             return None
-        turn = int(picture.getexif().get(ORIENTATION_TAG, 1))
+        turn = _orientation(picture)
         turn = turn if 1 <= turn <= 8 else 1
         if isinstance(picture, TiffImagePlugin.TiffImageFile) and (turn != 1 or not _plain_tiff(picture)):
             return None
@@ -117,7 +117,6 @@ def decode(path: Path, alpha: AlphaMeaning | None) -> tuple[NDArray[np.uint8], N
         InputError: the file is damaged or truncated, or its alpha looks like data.
     """
     with _opened(path) as picture:
-        turn = int(picture.getexif().get(ORIENTATION_TAG, 1))
         width, height = picture.size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
         opacity = np.empty((height, width), dtype=np.uint8) if picture.has_transparency_data else None
@@ -131,6 +130,8 @@ def decode(path: Path, alpha: AlphaMeaning | None) -> tuple[NDArray[np.uint8], N
                 colours = np.asarray(strip.convert("RGBA"))
                 pixels[top : top + rows] = colours[..., :3]
                 opacity[top : top + rows] = colours[..., 3]
+        # Only now: of some PNGs it is known when all is decoded.
+        turn = _orientation(picture)
     if opacity is None or alpha == "data":
         return turned(pixels, turn), None
     if alpha is None:
@@ -158,10 +159,12 @@ def turned(array: NDArray[Scalar], orientation: int) -> NDArray[Scalar]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[ImageFile.ImageFile]:
-    """An open picture; whatever Pillow raises inside becomes an `InputError`, and its warnings are muted."""
+    """An open picture; whatever Pillow raises inside becomes an `InputError`."""
     try:
         # Pillow warns above 89 million pixels and refuses above twice that; a map may well lie between.
-        with warnings.catch_warnings(action="ignore"), Image.open(path, formats=_FORMATS) as picture:
+        with muted():
+            picture = Image.open(path, formats=_FORMATS)
+        with picture:
             yield picture
     except Image.DecompressionBombError as error:
         raise InputError(
@@ -173,6 +176,12 @@ def _opened(path: Path) -> Iterator[ImageFile.ImageFile]:
         raise _damaged(path, "its head cannot be read") from error
     except _BROKEN as error:
         raise _damaged(path, error) from error
+
+
+def _orientation(picture: ImageFile.ImageFile) -> int:
+    """What the EXIF data says, without Pillow's warnings of what is wrong in it."""
+    with muted():
+        return int(picture.getexif().get(ORIENTATION_TAG, 1))
 
 
 def _damaged(path: Path, reason: object) -> InputError:

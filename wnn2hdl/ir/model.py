@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,6 +47,7 @@ class WisardModel:
     """
 
     kind: ClassVar[str] = "wisard"
+    ties: ClassVar[Literal["first", "last"]] = "first"
     encoder: Encoder
     classes: tuple[str, ...]
     mapping: NDArray[np.int64]

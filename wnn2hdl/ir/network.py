@@ -42,6 +42,11 @@ class Lut:
     inputs: tuple[str, ...]
     init: int
 
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """The signals on its pins, the least significant address bit first."""
+        return self.inputs
+
 
 @dataclass(frozen=True)
 class Mux:
@@ -61,6 +66,11 @@ class Mux:
     low: str
     high: str
     select: str
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """The signals on its pins: low, high, select, as `MUX_CONTENTS` is addressed."""
+        return self.low, self.high, self.select
 
 
 @dataclass(frozen=True)
@@ -82,12 +92,9 @@ class LutNetwork:
         for cell in self.cells:
             if isinstance(cell, Lut):
                 _check_contents(cell)
-                read = set(cell.inputs)
-            else:
-                read = {cell.low, cell.high, cell.select}
             if cell.name in known or cell.name in CONSTANTS:
                 raise ValueError(f"{cell.name} is driven twice")
-            if missing := read - known:
+            if missing := set(cell.reads) - known:
                 raise ValueError(f"{cell.name} reads {sorted(missing)} before it is driven")
             known.add(cell.name)
         self._check_muxes()
@@ -124,10 +131,7 @@ class LutNetwork:
         """LUTs on the longest path from an input to an output; a multiplexer adds none."""
         level = dict.fromkeys((*self.inputs, *CONSTANTS), 0)
         for cell in self.cells:
-            if isinstance(cell, Lut):
-                level[cell.name] = 1 + max(level[name] for name in cell.inputs)
-            else:
-                level[cell.name] = max(level[cell.low], level[cell.high], level[cell.select])
+            level[cell.name] = isinstance(cell, Lut) + max(level[name] for name in cell.reads)
         return max((level[signal] for _, signal in self.outputs), default=0)
 
     def evaluate(self, codes: ArrayLike) -> NDArray[np.bool_]:
@@ -154,10 +158,9 @@ class LutNetwork:
         for cell in self.cells:
             if isinstance(cell, Lut):
                 contents = unpack_contents(cell.init, len(cell.inputs)).view(np.uint8)
-                pins = [signals[name] for name in cell.inputs]
             else:
-                contents, pins = MUX_CONTENTS, [signals[name] for name in (cell.low, cell.high, cell.select)]
-            signals[cell.name] = look_up(contents, pins)
+                contents = MUX_CONTENTS
+            signals[cell.name] = look_up(contents, [signals[name] for name in cell.reads])
         result = np.empty((samples, len(self.outputs)), dtype=np.bool_)
         for position, (_, signal) in enumerate(self.outputs):
             result[:, position] = signals[signal]

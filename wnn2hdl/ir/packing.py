@@ -56,14 +56,11 @@ def pairs(gates: Sequence[Gate]) -> list[tuple[int, int]]:
 
 def packed_luts(network: LutNetwork) -> int:
     """LUTs of a network once its look-up tables share LUT6_2 where they can."""
+    joined = {x for mux in network.muxes for x in (mux.low, mux.high)}
     gates = [
-        Gate(frozenset(cell.inputs), (cell.name,), True)
-        if isinstance(cell, Lut)
-        else Gate(frozenset((cell.low, cell.high, cell.select)), (cell.name,), False)
+        Gate(frozenset(cell.reads), (cell.name,), isinstance(cell, Lut) and cell.name not in joined)
         for cell in network.cells
     ]
-    joined = {x for mux in network.muxes for x in (mux.low, mux.high)}
-    gates = [Gate(gate.reads, gate.drives, gate.is_lut and gate.drives[0] not in joined) for gate in gates]
     return len(network.luts) - len(pairs(gates))
 
 

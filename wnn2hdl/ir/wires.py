@@ -83,6 +83,17 @@ def read_word(nets: Mapping[str, Bits], word: Word) -> Bits:
     return columns[0] if len(columns) == 1 else np.concatenate(columns, axis=1)
 
 
+def single_bits(word: Word) -> list[Slice]:
+    """The bits of a word one by one, the least significant first."""
+    return [Slice(part.net, part.low + i) for part in word for i in range(part.width)]
+
+
+def word_values(bits: Bits) -> list[int]:
+    """Words as numbers, one for each sample."""
+    packed = np.packbits(bits, axis=1, bitorder="little")
+    return [int.from_bytes(row.tobytes(), "little") for row in packed]
+
+
 def word_to_json(word: Word) -> list[str]:
     """Slices as text, the least significant first."""
     return [str(part) for part in word]

@@ -10,8 +10,8 @@ from wnn2hdl.ir import MAX_TABLE_INPUTS, Thermometer, TruthTable, WisardModel
 from wnn2hdl.ir.care import CareSet, Everything, Implied
 from wnn2hdl.ir.circuit import Care, Circuit, Instance
 from wnn2hdl.ir.encoder import Encoder
-from wnn2hdl.ir.models import LutGroupModel, SparseWisardModel
-from wnn2hdl.ir.models.base import ZERO, FirstOrLast
+from wnn2hdl.ir.models import LutGroupModel, SparseWisardModel, VotingModel
+from wnn2hdl.ir.models.base import ZERO
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table
 from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.lower.encoder import encoder_circuit, features_port
@@ -19,9 +19,6 @@ from wnn2hdl.minimise.sharing import share
 
 CORE = "core"
 NETWORK = "network"
-
-VotingModel = WisardModel | SparseWisardModel | LutGroupModel
-"""Models whose last tables vote for classes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +89,7 @@ def core(model: VotingModel) -> Circuit:
             )
         votes.append(Sum(f"votes_{owner}", word))
     winner = ArgMax(
-        "winner", tuple((Slice(vote.name, 0, vote.drives[vote.name]),) for vote in votes), _ties(model)
+        "winner", tuple((Slice(vote.name, 0, vote.drives[vote.name]),) for vote in votes), model.ties
     )
     return Circuit(
         CORE,
@@ -169,10 +166,6 @@ def _fires(model: WisardModel | SparseWisardModel, bleaching: int) -> NDArray[np
         addresses, counts = model.contents(*divmod(ram, model.rams))
         fires[ram, addresses[counts >= bleaching].astype(np.int64)] = True
     return fires
-
-
-def _ties(model: VotingModel) -> FirstOrLast:
-    return "first" if isinstance(model, WisardModel) else model.ties
 
 
 def _distinct(

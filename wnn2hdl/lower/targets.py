@@ -16,9 +16,8 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel
+from wnn2hdl.ir.models import AnyModel, VotingModel
 from wnn2hdl.lower import deforestation, structural
-from wnn2hdl.lower.structural import VotingModel
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,24 +55,20 @@ def espresso(table: TruthTable) -> Minimised:
         CheckError: the cover differs from the table on a cared-for code.
     """
     on_codes = np.flatnonzero(table.care & table.values.any(axis=1))
-    small = min(_rows(table, RTYPE), _rows(table, DTYPE)) <= MAX_CODES and bool(table.inputs)
-    cubes = _espresso_cubes(table) if small else _irredundant_cubes(table)
+    # Cubes that describe the table as ON and OFF codes, or as ON codes and don't-cares.
+    cared = int(table.care.sum())
+    rows = {RTYPE: cared, DTYPE: len(on_codes) + len(table.care) - cared}
+    other = RTYPE if rows[RTYPE] <= rows[DTYPE] else DTYPE
+    small = rows[other] <= MAX_CODES and bool(table.inputs)
+    cubes = _espresso_cubes(table, other) if small else _irredundant_cubes(table)
     cover = Cover(table.inputs, table.outputs, tuple(cubes))
     method = "espresso" if small else "irredundant"
     require_equal(table, cover, f"the {method} cover")
     return Minimised(cover, method, len(on_codes), len(on_codes) * len(table.inputs))
 
 
-def _rows(table: TruthTable, kind: int) -> int:
-    """Cubes that describe the table as ON and OFF codes, or as ON codes and don't-cares."""
-    on = int((table.care & table.values.any(axis=1)).sum())
-    cared = int(table.care.sum())
-    return cared if kind == RTYPE else on + len(table.care) - cared
-
-
-def _espresso_cubes(table: TruthTable) -> list[Cube]:
-    """Espresso's cover, in a fixed order; it returns a set."""
-    other = RTYPE if _rows(table, RTYPE) <= _rows(table, DTYPE) else DTYPE
+def _espresso_cubes(table: TruthTable, other: int) -> list[Cube]:
+    """Espresso's cover, in a fixed order; it returns a set. ``other``: what is listed beside ON codes."""
     rows = np.where(table.care, table.values.any(axis=1) | (other == RTYPE), other == DTYPE)
     codes = np.flatnonzero(rows)
     # Cubes of the library: input literals (1 false, 2 true, 3 either), then outputs (0, 1, 2 free).

@@ -1,7 +1,7 @@
 """LUT mapping as a stage: many ways to map a table, and the best network that is proved right."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 
@@ -106,8 +106,9 @@ def map_luts(
     if effort not in EFFORTS:
         raise InputError("no such effort", value=effort, hint="give 0, 1, 2 or 3")
     started = time.perf_counter()
-    search = _Search(table, progress)
-    search.offer_all(_decomposed(table, effort))
+    supports = [minimum_supports(x & table.care, ~x & table.care)[0].bit_count() for x in table.values.T]
+    search = _Search(table, fewest_luts(supports), progress)
+    search.offer_all(_decomposed(table, max(supports, default=0), effort))
     if not search.done and effort > 0 and search.best is not None and len(table.outputs) == 1:
         search.offer_all(two_lut_candidates(_filled(table, search.best)[:, 0]))
     if not search.done and (effort > 0 or search.method == "multiplexer tree"):
@@ -130,13 +131,13 @@ def map_luts(
 class _Search:
     """Keeps the right networks and the best of them."""
 
-    def __init__(self, table: TruthTable, progress: Callable[[str, int], None] | None) -> None:
+    def __init__(self, table: TruthTable, bound: int, progress: Callable[[str, int], None] | None) -> None:
         self.table = table
         self.progress = progress
         self.candidates: list[Candidate] = []
         self.method = ""
         self.right: list[tuple[tuple[int, int, int], Draft]] = []
-        self.bound = fewest_luts(table)
+        self.bound = bound
 
     @property
     def best(self) -> Draft | None:
@@ -172,23 +173,21 @@ class _Search:
                 self.progress(method, cost[0])
 
 
-def fewest_luts(table: TruthTable) -> int:
+def fewest_luts(supports: Sequence[int]) -> int:
     """A lower bound: one LUT for an output of two inputs or more, two for one of seven or more.
 
     Outputs may share cells, so only the one that needs most is counted.
+
+    Args:
+        supports: how many inputs each output needs.
     """
-    sizes = [support.bit_count() for support in _supports(table)]
-    return max((0 if size < 2 else 1 if size <= LUT_INPUTS else 2 for size in sizes), default=0)
+    return max((0 if size < 2 else 1 if size <= LUT_INPUTS else 2 for size in supports), default=0)
 
 
-def _supports(table: TruthTable) -> list[int]:
-    return [minimum_supports(x & table.care, ~x & table.care)[0] for x in table.values.T]
-
-
-def _decomposed(table: TruthTable, effort: int) -> Iterator[tuple[str, Draft]]:
+def _decomposed(table: TruthTable, widest: int, effort: int) -> Iterator[tuple[str, Draft]]:
     functions = [(column & table.care, ~column & table.care) for column in table.values.T]
     everything = tuple(range(len(table.inputs)))
-    if max((x.bit_count() for x in _supports(table)), default=0) > _MAX_DECOMPOSED[effort]:
+    if widest > _MAX_DECOMPOSED[effort]:
         draft = Draft(len(table.inputs))
         draft.outputs = [mux_tree(draft, everything, on, off) for on, off in functions]
         yield "multiplexer tree", draft

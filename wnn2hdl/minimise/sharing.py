@@ -13,7 +13,7 @@ from wnn2hdl.ir import TruthTable, codes_to_bits
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit, Node
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table
-from wnn2hdl.ir.wires import Slice, Word
+from wnn2hdl.ir.wires import Slice, Word, single_bits
 from wnn2hdl.minimise.support import members, minimum_supports, restrict
 
 Bit = Slice | bool
@@ -53,7 +53,7 @@ def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shar
             and isinstance(node.function, TruthTable)
             and len(node.function.outputs) == 1
         ):
-            bits = [alias.get(bit, bit) for bit in _bits(node.word)]
+            bits = [alias.get(bit, bit) for bit in single_bits(node.word)]
             simple = _simplified(bits, node.function, port.name, care)
             if not isinstance(simple, tuple):
                 alias[Slice(node.name)] = simple
@@ -119,7 +119,7 @@ def _sum(node: Sum, alias: dict[Slice, Bit], any_bit: Slice) -> Sum | Table:
     """
     weights: Counter[Slice] = Counter()
     offset = node.offset
-    for bit, weight in zip(_bits(node.word), node.weights, strict=True):
+    for bit, weight in zip(single_bits(node.word), node.weights, strict=True):
         found = alias.get(bit, bit)
         if isinstance(found, bool):
             offset += weight * found
@@ -144,12 +144,14 @@ def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
             needed |= {bit.net for word in node.reads for bit in word}
     kept.reverse()
     read = sorted(
-        {bit.low for node in kept for word in node.reads for bit in _bits(word) if bit.net == port.name}
+        {bit.low for node in kept for word in node.reads for bit in single_bits(word) if bit.net == port.name}
     )
     place = {position: i for i, position in enumerate(read)}
 
     def moved(word: Word) -> Word:
-        return tuple(Slice(bit.net, place[bit.low]) if bit.net == port.name else bit for bit in _bits(word))
+        return tuple(
+            Slice(bit.net, place[bit.low]) if bit.net == port.name else bit for bit in single_bits(word)
+        )
 
     moved_nodes = [
         replace(node, word=moved(node.word)) if isinstance(node, Table | Sum) else node for node in kept
@@ -158,7 +160,3 @@ def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
         circuit, inputs=(replace(port, width=max(len(read), 1)),), nodes=tuple(moved_nodes), care=()
     )
     return Shared(result, tuple(read))
-
-
-def _bits(word: Word) -> list[Slice]:
-    return [Slice(part.net, part.low + i) for part in word for i in range(part.width)]

@@ -1,7 +1,6 @@
 """Access to GDAL: which files it may open, one line for what is wrong, where a raster lies on the Earth."""
 
 import math
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,6 +9,7 @@ from typing import Any, Self
 
 from wnn2hdl.errors import InputError, extra_needed
 from wnn2hdl.files import require_file
+from wnn2hdl.muted import muted
 from wnn2hdl.raster.formats import TIFF, format_of
 
 CACHE_BYTES = 64 << 20
@@ -158,8 +158,7 @@ def open_raster(rasterio: Any, path: Path, mode: str = "r", **profile: Any) -> A
     Raises:
         InputError: it is to be read, and is missing, no regular file, of another format, or points at others.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+    with muted(rasterio.errors.NotGeoreferencedWarning):
         # Absolute paths only: GDAL takes a name that begins with a driver's for a call of that driver.
         if mode != "r":
             return rasterio.open(path.absolute(), mode, **profile)

@@ -1,6 +1,5 @@
 """Windows of a raster as red, green and blue of 8 bits, with what the file states to be no data."""
 
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from wnn2hdl.errors import InputError
+from wnn2hdl.muted import muted
 from wnn2hdl.raster.channels import choose_channels
 from wnn2hdl.raster.gdal import Georeference
 from wnn2hdl.raster.handles import Handles
@@ -147,7 +147,7 @@ def stored_orientation(path: Path) -> int:
     """How a picture is stored, as EXIF numbers it from 1, upright; 1 also where Pillow does not know."""
     try:
         # Pillow warns of large pictures and refuses larger ones; only the head is read here.
-        with warnings.catch_warnings(action="ignore"), Image.open(path) as picture:
+        with muted(), Image.open(path) as picture:
             return int(picture.getexif().get(ORIENTATION_TAG, _UPRIGHT))
     except (OSError, SyntaxError, ValueError, TypeError, KeyError, Image.DecompressionBombError):
         return _UPRIGHT

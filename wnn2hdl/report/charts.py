@@ -2,7 +2,6 @@
 
 import io
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup
 
 from wnn2hdl.errors import printable
+from wnn2hdl.muted import muted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -234,9 +234,9 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
         "axes.spines.top": False,
         "axes.spines.right": False,
     }
-    with rc_context(style), warnings.catch_warnings():
-        # The browser draws the text, with whatever fonts it has.
-        warnings.filterwarnings("ignore", "Glyph .* missing from font|Matplotlib currently does not support")
+    # The browser draws the text, with whatever fonts it has.
+    unfit = "Glyph .* missing from font|Matplotlib currently does not support"
+    with rc_context(style), muted(message=unfit):
         figure = Figure(figsize=(_NARROW_WIDTH if narrow else _WIDTH, height), layout="constrained")
         axes = figure.add_subplot()
         axes.tick_params(axis="y", length=0)

@@ -310,7 +310,7 @@ def _cell(part: str, position: int, cell: Lut | Mux, network: LutNetwork) -> _Ce
     joins_luts = any(lut.name == cell.low for lut in network.luts)
     text = f"{cell.name} = {cell.select} ? {cell.high} : {cell.low}"
     kind = "MUXF7" if joins_luts else "MUXF8"
-    return _Cell(place, cell.name, kind, text, None, None, (cell.low, cell.high, cell.select))
+    return _Cell(place, cell.name, kind, text, None, None, cell.reads)
 
 
 def _window(neighbourhood: Neighbourhood) -> list[list[str]]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
-from wnn2hdl.ir import CONSTANTS, Lut, LutNetwork, Mux
+from wnn2hdl.ir import CONSTANTS, Lut, LutNetwork
 from wnn2hdl.report.placement import Edge, Place, middles, order, straightened
 
 Kind = Literal["input", "lut", "mux", "output"]
@@ -175,7 +175,7 @@ def draw(network: LutNetwork) -> Schematic:
 def _graph(network: LutNetwork) -> _Graph:
     graph = _Graph()
     for cell in network.cells:
-        graph.pins[cell.name] = tuple(dict.fromkeys(_reads(cell)))
+        graph.pins[cell.name] = tuple(dict.fromkeys(cell.reads))
         for name in graph.pins[cell.name]:
             graph.readers[name].append(cell.name)
     for name, signal in network.outputs:
@@ -229,17 +229,13 @@ def _longest(network: LutNetwork) -> tuple[str, ...]:
     level: dict[str, int] = dict.fromkeys((*network.inputs, *CONSTANTS), 0)
     slowest: dict[str, str] = {}
     for cell in network.cells:
-        slowest[cell.name] = max(_reads(cell), key=level.__getitem__)
+        slowest[cell.name] = max(cell.reads, key=level.__getitem__)
         level[cell.name] = level[slowest[cell.name]] + isinstance(cell, Lut)
     name, signal = max(network.outputs, key=lambda pair: level[pair[1]])
     path = [_OUTPUT + name, signal]
     while path[-1] in slowest:
         path.append(slowest[path[-1]])
     return tuple(path[::-1])
-
-
-def _reads(cell: Lut | Mux) -> tuple[str, ...]:
-    return cell.inputs if isinstance(cell, Lut) else (cell.low, cell.high, cell.select)
 
 
 def _label(name: str) -> str:

@@ -9,22 +9,20 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, WisardModel, codes_to_bits
 from wnn2hdl.ir.encoder import Encoder
 from wnn2hdl.ir.features import Words
-from wnn2hdl.ir.models import LutGroupModel, SparseWisardModel
+from wnn2hdl.ir.models import LutGroupModel, SparseWisardModel, VotingModel
 from wnn2hdl.ir.models.base import ZERO
 from wnn2hdl.ir.wires import Bits
-from wnn2hdl.verify.reference import lookup, module, plain_sum
+from wnn2hdl.verify.reference import class_bits, lookup, module, plain_sum, winning
 from wnn2hdl.verify.specification import Claim, Samples, Specification
 
 PART = "network"
 SAMPLES = 10_240
 """Feature vectors that a network is simulated on: random ones, and ones beside thresholds."""
 
-VotingModel = WisardModel | SparseWisardModel | LutGroupModel
-
 
 def network_specification(model: VotingModel) -> Specification:
     """The claim of a model whose tables vote for classes."""
-    width = (len(model.classes) - 1).bit_length()
+    width = class_bits(model)
     encoder = model.encoder
 
     def answers(inputs: Samples) -> dict[str, Bits]:
@@ -99,7 +97,7 @@ def _lines(model: VotingModel) -> list[str]:
     width = max(len(word) for word in votes).bit_length()
     for number, word in enumerate(votes):
         lines.append(f"  wire [{width - 1}:0] response_{number} = {plain_sum(word, width)};")
-    return [*lines, *_winner(len(votes), width, ">=" if _ties(model) == "last" else ">")]
+    return [*lines, *winning(len(votes), width, ties=model.ties)]
 
 
 def _encoder(encoder: Encoder) -> tuple[list[str], list[str]]:
@@ -157,21 +155,3 @@ def _rams(model: WisardModel | SparseWisardModel) -> tuple[list[list[int]], NDAr
         addresses, counts = model.contents(*divmod(ram, model.rams))
         contents[ram, addresses[counts >= model.bleaching].astype(np.int64)] = True
     return mapping, contents
-
-
-def _ties(model: VotingModel) -> str:
-    return "first" if isinstance(model, WisardModel) else model.ties
-
-
-def _winner(classes: int, width: int, compare: str) -> list[str]:
-    """Lines that drive ``class_bits``: a challenger takes over where it compares so with the best before."""
-    bits = (classes - 1).bit_length()
-    lines = [f"  wire [{width - 1}:0] best_0 = response_0;", f"  wire [{bits - 1}:0] class_0 = {bits}'d0;"]
-    for number in range(1, classes):
-        last = number - 1
-        lines += [
-            f"  wire wins_{number} = response_{number} {compare} best_{last};",
-            f"  wire [{width - 1}:0] best_{number} = wins_{number} ? response_{number} : best_{last};",
-            f"  wire [{bits - 1}:0] class_{number} = wins_{number} ? {bits}'d{number} : class_{last};",
-        ]
-    return [*lines, f"  assign class_bits = class_{classes - 1};"]

@@ -27,8 +27,9 @@ from dataclasses import dataclass
 
 from wnn2hdl.errors import ToolError
 from wnn2hdl.ir import PIXEL_BITS
+from wnn2hdl.ir.wires import word_values
 from wnn2hdl.verify.equivalence import CLOCK, Circuit, evaluate, find_differences
-from wnn2hdl.verify.specification import Claim, Specification, show, value_bits, word_values
+from wnn2hdl.verify.specification import Claim, Specification, show, value_bits
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
 

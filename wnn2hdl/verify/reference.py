@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir.models import FirstOrLast, VotingModel
 
 
 def module(name: str, inputs: Mapping[str, int], outputs: Mapping[str, int], lines: Sequence[str]) -> str:
@@ -56,7 +57,7 @@ def lookup(prefix: str, contents: NDArray[np.bool_], address: Sequence[str]) -> 
 
 def winner(model: WisardModel) -> list[str]:
     """Lines that drive ``class_bits`` with the winning class for the wire ``code``."""
-    sum_width, class_width = model.rams.bit_length(), class_bits(model)
+    sum_width = model.rams.bit_length()
     lines = []
     fires = model.counts >= model.bleaching
     for discriminator in range(len(model.classes)):
@@ -70,24 +71,32 @@ def winner(model: WisardModel) -> list[str]:
         lines.append(
             f"  wire [{sum_width - 1}:0] response_{discriminator} = {plain_sum(answers, sum_width)};"
         )
-    lines += [
-        f"  wire [{sum_width - 1}:0] best_0 = response_0;",
-        f"  wire [{class_width - 1}:0] class_0 = {class_width}'d0;",
-    ]
-    for challenger in range(1, len(model.classes)):
-        # A strict comparison: among equal responses the class named first stays.
-        last = challenger - 1
+    return [*lines, *winning(len(model.classes), sum_width, ties="first")]
+
+
+def winning(classes: int, width: int, *, ties: FirstOrLast) -> list[str]:
+    """Lines that drive ``class_bits`` with the class of the highest of ``response_0`` and so on.
+
+    Args:
+        classes: at least 2.
+        width: bits of a response.
+        ties: which of several highest classes wins.
+    """
+    # Challengers come in turn; among equal responses a strict comparison leaves the class named first.
+    compare = ">" if ties == "first" else ">="
+    bits = (classes - 1).bit_length()
+    lines = [f"  wire [{width - 1}:0] best_0 = response_0;", f"  wire [{bits - 1}:0] class_0 = {bits}'d0;"]
+    for number in range(1, classes):
+        last = number - 1
         lines += [
-            f"  wire wins_{challenger} = response_{challenger} > best_{last};",
-            f"  wire [{sum_width - 1}:0] best_{challenger} = "
-            f"wins_{challenger} ? response_{challenger} : best_{last};",
-            f"  wire [{class_width - 1}:0] class_{challenger} = "
-            f"wins_{challenger} ? {class_width}'d{challenger} : class_{last};",
+            f"  wire wins_{number} = response_{number} {compare} best_{last};",
+            f"  wire [{width - 1}:0] best_{number} = wins_{number} ? response_{number} : best_{last};",
+            f"  wire [{bits - 1}:0] class_{number} = wins_{number} ? {bits}'d{number} : class_{last};",
         ]
-    return [*lines, f"  assign class_bits = class_{len(model.classes) - 1};"]
+    return [*lines, f"  assign class_bits = class_{classes - 1};"]
 
 
-def class_bits(model: WisardModel) -> int:
+def class_bits(model: VotingModel) -> int:
     """Bits of a class index: 1 for two classes."""
     return (len(model.classes) - 1).bit_length()
 

@@ -111,12 +111,6 @@ def flags_of(care: CareSet, width: int, what: str) -> NDArray[np.bool_]:
     return flags
 
 
-def word_values(bits: Bits) -> list[int]:
-    """Words as numbers, one for each sample."""
-    packed = np.packbits(bits, axis=1, bitorder="little")
-    return [int.from_bytes(row.tobytes(), "little") for row in packed]
-
-
 def value_bits(value: int, width: int) -> Bits:
     """One sample of a word: bool ``[1, width]``."""
     packed = np.frombuffer(value.to_bytes(-(-width // 8), "little"), dtype=np.uint8)

@@ -6,10 +6,10 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import EdgeFilter, Neighbourhood, Thermometer, WisardModel, Words
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel
+from wnn2hdl.ir.models import AnyModel, VotingModel
 from wnn2hdl.verify.block import block_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
-from wnn2hdl.verify.network import VotingModel, network_specification
+from wnn2hdl.verify.network import network_specification
 from wnn2hdl.verify.specification import Specification
 
 

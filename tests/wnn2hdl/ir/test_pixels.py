@@ -7,7 +7,7 @@ from hypothesis.extra.numpy import arrays
 
 from wnn2hdl.ir import BitSelect, codes_to_bits
 from wnn2hdl.ir.pixels import bit_name, bits_to_pixels, pixel_bits, pixels_of_codes
-from wnn2hdl.verify.specification import word_values
+from wnn2hdl.ir.wires import word_values
 
 
 def test_red_is_in_the_highest_bits_of_a_pixel() -> None:

@@ -95,7 +95,7 @@ def test_threads_do_not_see_each_other_s_options() -> None:
 
 
 def test_a_wrong_cover_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules["wnn2hdl.minimise.espresso"], "_espresso_cubes", lambda _: [])
+    monkeypatch.setattr(sys.modules["wnn2hdl.minimise.espresso"], "_espresso_cubes", lambda *_: [])
     table = TruthTable.exact(("a",), ("y",), np.array([[False], [True]]))
     with pytest.raises(CheckError, match="the espresso cover differs from its table"):
         minimise(table)

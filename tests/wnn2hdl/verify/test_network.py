@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 from tests.small_networks import WORDS, encoder_of, lut_network, wisard
 from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
-from wnn2hdl.lower.structural import VotingModel, network
+from wnn2hdl.ir.models import VotingModel
+from wnn2hdl.ir.wires import word_values
+from wnn2hdl.lower.structural import network
 from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.verify.equivalence import Circuit, evaluate
 from wnn2hdl.verify.network import network_specification
 from wnn2hdl.verify.proof import prove
-from wnn2hdl.verify.specification import word_values
 
 
 def silent(step: str, done: int, total: int) -> None:

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wnn2hdl.ir import EdgeFilter, WisardModel
+from wnn2hdl.ir.wires import word_values
 from wnn2hdl.verify.equivalence import Circuit, evaluate
 from wnn2hdl.verify.reference import lookup
-from wnn2hdl.verify.specification import Claim, Specification, value_bits, word_values
+from wnn2hdl.verify.specification import Claim, Specification, value_bits
 from wnn2hdl.verify.specify import specify
 
 

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.care import Codes, Everything, Implied
 from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits
-from wnn2hdl.verify.specification import flags_of, show, value_bits, word_values
+from wnn2hdl.ir.wires import word_values
+from wnn2hdl.verify.specification import flags_of, show, value_bits
 
 
 @given(st.integers(1, 230).flatmap(lambda width: st.tuples(st.just(width), st.integers(0, 2**width - 1))))

@@ -1,7 +1,6 @@
 """Writing outlined regions as GeoJSON or GeoPackage, some at a time."""
 
 import json
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from wnn2hdl.apps.deforestation.antimeridian import DECIMALS, within_the_world
 from wnn2hdl.apps.deforestation.ellipsoid import to_degrees
 from wnn2hdl.errors import InputError, extra_needed
+from wnn2hdl.muted import recorded
 from wnn2hdl.raster import Georeference
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def geopackage(path: Path, dataset: "DatasetReader", names: Sequence[str]) -> It
         }
         # Recorded, since on a full disk some of GDAL's errors come as warnings; that there is no coordinate
         # system is known.
-        with warnings.catch_warnings(record=True, action="always") as noted:
+        with recorded() as noted:
             try:
                 raw.write(
                     path,

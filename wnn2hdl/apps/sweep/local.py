@@ -1,6 +1,5 @@
 """Trials on the cores of this machine."""
 
-import warnings
 from collections.abc import Iterable, Iterator
 
 import joblib
@@ -10,6 +9,7 @@ from wnn2hdl.apps.sweep.grid import Trial, batches
 from wnn2hdl.apps.sweep.pixels import PixelSets
 from wnn2hdl.apps.sweep.trial import Record, run_trials
 from wnn2hdl.errors import ToolError
+from wnn2hdl.muted import muted
 
 BATCH = 10
 """Trials per task: about half a second of work, so handing it over costs nothing and a kill loses little."""
@@ -42,5 +42,5 @@ def run_locally(sets: PixelSets, trials: Iterable[Trial]) -> Iterator[list[Recor
         ) from error
     finally:
         # Whoever stops taking results knows that tasks are cancelled.
-        with warnings.catch_warnings(action="ignore", category=UserWarning):
+        with muted(UserWarning):
             done.close()

@@ -14,6 +14,9 @@ from wnn2hdl.ir.models.wisard import Dynamic, SparseWisardModel
 AnyModel = WisardModel | SparseWisardModel | BloomWisardModel | LutGroupModel | TableSumModel | LogicModel
 """Every model that a file can hold."""
 
+VotingModel = WisardModel | SparseWisardModel | LutGroupModel
+"""Models whose last tables vote for classes."""
+
 KINDS: dict[str, type[AnyModel]] = {
     model.kind: model
     for model in (
@@ -55,5 +58,6 @@ __all__ = [
     "SparseWisardModel",
     "SumLayer",
     "TableSumModel",
+    "VotingModel",
     "load_model",
 ]

@@ -46,7 +46,7 @@ def test_more_luts_never_lose_what_one_has(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mass = rng.integers(-99, 100, 1 << WIDTH) + 60 * BITS[:, rng.permutation(WIDTH)[:3]].sum(axis=1) - 90
     one, two = (score(find_cascade(mass, luts, seed=0), mass) for luts in (1, 2))
-    assert two > one
+    assert two >= one
 
 
 def test_no_table_reads_more_than_six_inputs() -> None:
