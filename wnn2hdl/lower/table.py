@@ -3,17 +3,15 @@
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
-    WINDOW_CODES,
     PictureEncoder,
     TruthTable,
     WisardModel,
     all_codes,
     codes_to_bits,
-    window_codes,
 )
 
 
@@ -51,20 +49,6 @@ def code_histogram(encoder: PictureEncoder, images: Iterable[NDArray[np.uint8]])
     total = np.zeros(len(all_codes(encoder.width)), dtype=np.int64)
     for image in images:
         total += np.bincount(encoder.codes(image).ravel(), minlength=len(total))
-    return total
-
-
-def window_histogram(images: Iterable[ArrayLike]) -> NDArray[np.int64]:
-    """How often each 3x3 window occurs in binary images, int64 ``[512]``, indexed as in `window_codes`.
-
-    Args:
-        images: bool ``[height, width]`` each; one smaller than a window adds nothing.
-    """
-    total = np.zeros(WINDOW_CODES, dtype=np.int64)
-    for image in images:
-        flags = np.asarray(image, dtype=np.bool_)
-        if min(flags.shape) >= 3:
-            total += np.bincount(window_codes(flags).ravel(), minlength=WINDOW_CODES)
     return total
 
 

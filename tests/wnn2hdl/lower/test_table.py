@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from hypothesis.extra.numpy import array_shapes, arrays
+from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
 from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import Encoder, Thermometer, WisardModel, codes_to_bits, window_codes
-from wnn2hdl.lower.table import care_set, code_histogram, pixel_table, window_histogram
+from wnn2hdl.ir import Encoder, Thermometer, WisardModel, codes_to_bits
+from wnn2hdl.lower.table import care_set, code_histogram, pixel_table
 
 small_images = arrays(
     np.uint8, st.tuples(st.integers(1, 6), st.integers(1, 6), st.just(3)), elements=st.integers(0, 255)
@@ -74,16 +74,6 @@ def test_every_pixel_is_counted_once(images: list[NDArray[np.uint8]]) -> None:
         for pixel in image.reshape(-1, 3):
             expected[encoder.codes(pixel)] += 1
     assert np.array_equal(code_histogram(encoder, iter(images)), expected)
-
-
-@given(st.lists(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=6)), max_size=3))
-def test_every_window_is_counted_once(images: list[NDArray[np.bool_]]) -> None:
-    expected = np.zeros(512, dtype=np.int64)
-    for image in images:
-        if min(image.shape) >= 3:
-            for code in window_codes(image).ravel():
-                expected[code] += 1
-    assert np.array_equal(window_histogram(iter(images)), expected)
 
 
 @given(histograms, st.integers(1, 9))
