@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,9 +8,10 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from wnn2hdl.encode import ThermometerEncoder, fit_thermometer, high_bits, parse_bits
+from wnn2hdl.encode import ThermometerEncoder, fit_thermometer, high_bits, parse_bits, whole_words
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import PIXEL_BIT_NAMES
+from wnn2hdl.ir.features import FixedPoint
 
 tables = arrays(
     np.float64,
@@ -75,6 +78,55 @@ def test_a_constant_feature_gets_no_bits() -> None:
     assert fit_thermometer([[0.0, 5.0], [1.0, 5.0]], 2).thresholds == ((1.0,), ())
 
 
+def test_uniform_thresholds_split_the_range_evenly() -> None:
+    features = np.array([0.0, 1.0, 1.5, 10.0]).reshape(-1, 1)
+    assert fit_thermometer(features, 4, "uniform").thresholds == ((2.0, 4.0, 6.0, 8.0),)
+
+
+def test_gaussian_thresholds_split_a_normal_distribution_evenly() -> None:
+    features = np.random.default_rng(0).normal(5, 2, size=(100_000, 1))
+    (levels,) = fit_thermometer(features, 3, "gaussian").thresholds
+    assert levels == pytest.approx((5 - 2 * 0.6745, 5, 5 + 2 * 0.6745), abs=0.03)
+
+
+def test_thresholds_that_no_sample_reaches_are_left_out() -> None:
+    features = np.r_[np.zeros(99), 1000.0].reshape(-1, 1)
+    (levels,) = fit_thermometer(features, 5, "gaussian").thresholds
+    assert levels
+    assert all(0 < level <= 1000 for level in levels)
+
+
+@given(tables, st.integers(1, 9), st.sampled_from(["quantiles", "uniform", "gaussian"]))
+def test_thresholds_in_words_are_words(features: NDArray[np.float64], bits: int, spacing: Any) -> None:
+    words = FixedPoint(12, 3)
+    if (np.ptp(words.words(features), axis=0) == 0).all():
+        return
+    encoder = fit_thermometer(features, bits, spacing, words)
+    assert encoder.input == words
+    encoded = encoder.bits(features)
+    for levels in encoder.thresholds:
+        assert np.array_equal(words.values(words.words(levels)), levels)
+    assert encoded.any(axis=0).all()
+    assert not encoded.all(axis=0).any()
+
+
+@pytest.mark.parametrize(
+    ("features", "words"),
+    [
+        ([[0.0], [255.0]], "UQ8.0"),
+        ([[0.0], [256.0]], "UQ9.0"),
+        ([[-5.0], [3.0]], "Q3.0"),
+        ([[-4.0], [4.0]], "Q3.0"),
+        ([[-1.0], [0.0]], "Q0.0"),
+        ([[0.0], [0.0]], "UQ1.0"),
+        ([[0.5], [1.0]], "None"),
+        ([[0.0], [1e300]], "None"),
+    ],
+)
+def test_whole_features_have_a_format(features: list[list[float]], words: str) -> None:
+    assert str(whole_words(features)) == words
+
+
 @given(tables, st.integers(1, 9))
 def test_every_bit_tells_samples_apart(features: NDArray[np.float64], bits: int) -> None:
     distinct = [len(np.unique(column)) for column in features.T]
@@ -106,8 +158,8 @@ def test_what_no_thermometer_fits_gets_one_line(features: object, bits: int, lin
 
 def test_the_transformer_is_fit_thermometer() -> None:
     features = np.random.default_rng(0).normal(size=(50, 3))
-    transformer = ThermometerEncoder(bits=4).fit(features)
-    assert transformer.thermometer_ == fit_thermometer(features, 4)
+    transformer = ThermometerEncoder(bits=4, spacing="uniform").fit(features)
+    assert transformer.thermometer_ == fit_thermometer(features, 4, "uniform")
     assert np.array_equal(transformer.transform(features), transformer.thermometer_.bits(features))
     assert transformer.get_feature_names_out()[:5].tolist() == ["x0_t0", "x0_t1", "x0_t2", "x0_t3", "x1_t0"]
 

@@ -23,12 +23,14 @@ from wnn2hdl.cli.options import (
     images_option,
     labelled,
     masks_option,
+    refuse,
     seed_option,
     share_option,
     square_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
+from wnn2hdl.cli.vectors import label_option, raw_option, table_option
 from wnn2hdl.dataset import Dataset, from_samples
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
@@ -71,13 +73,9 @@ SECTIONS = {
 @reading_options
 @click.option("--chips", type=folder, help="Read pictures tagged as a whole (needs --tags).")
 @click.option("--tags", type=file, help="Read image_name,tags of the chips from this CSV.")
-@click.option("--table", type=file, help="Read feature vectors from this CSV file (needs --label).")
-@click.option("--label", metavar="COLUMN", help="Take the classes from this column of the table.")
-@click.option(
-    "--raw/--scaled",
-    default=None,
-    help="Scale the table's features as the model says, or take them as they are.",
-)
+@table_option
+@label_option
+@raw_option
 @square_option("Also measure squares whose pixels vote.")
 @share_option
 @seed_option
@@ -110,9 +108,9 @@ def evaluate_command(
       wnn2hdl evaluate build/mine --images IMAGES --masks MASKS --square 20
       wnn2hdl evaluate model.json --table data.csv --label class --json
     """
-    if table is not None or label is not None:
-        if table is None or label is None:
-            raise InputError("these options go together", value="--table and --label", hint="give both")
+    if table is None:
+        refuse(("--label", "--raw"), "only a table has feature vectors, and none is given with --table")
+    else:
         if images or masks or mask_format or chips or tags or square or reading != Reading():
             raise InputError("a table has no pictures", hint="leave out the options for pictures")
         data, text = _with_table(model, table, label, raw)
@@ -223,7 +221,7 @@ def _figures(confusion: NDArray[np.int64], classes: tuple[str, ...]) -> dict[str
     }
 
 
-def _with_table(model: Path, table: Path, label: str, raw: bool | None) -> tuple[dict[str, Any], str]:
+def _with_table(model: Path, table: Path, label: str | None, raw: bool | None) -> tuple[dict[str, Any], str]:
     classifier = load_vector_classifier(model)
     rows = read_table(table, label)
     confusion = row_confusion(classifier, rows, raw)

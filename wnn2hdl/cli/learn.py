@@ -1,4 +1,4 @@
-"""`train`: models from labelled images."""
+"""`train`: models from labelled images, or from tables of feature vectors."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,23 +18,39 @@ from wnn2hdl.cli.options import (
     labelled,
     masks_option,
     output_option,
+    refuse,
     seed_option,
     spoken_command,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
+from wnn2hdl.cli.vectors import (
+    TRAINING,
+    cross_validate_option,
+    label_option,
+    levels_option,
+    mapping_option,
+    table_option,
+    table_sentence,
+    thermometer_option,
+    train_on_table,
+    words_option,
+)
 from wnn2hdl.dataset import Dataset
-from wnn2hdl.encode import high_bits, parse_bits
+from wnn2hdl.encode import Spacing, high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.model import COMMAND
+from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
 from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
 from wnn2hdl.training.discriminators import LEFT_OUT, train, with_colours
 from wnn2hdl.training.neighbourhood import train_neighbourhood
+from wnn2hdl.training.tables import TableOptions
 
 
 @dataclass(frozen=True)
@@ -71,10 +87,14 @@ class Discriminators:
             )
 
 
+IMAGES = ("--images", "--masks", *MASKS, *READING, "--regions", "--chips")
+OTHERS = ("--luts-per-pixel", "--neighbourhood", "--pareto", "--trials")
+
 SECTIONS = {
-    "Images and labels": ("--images", "--masks", *MASKS, *READING, "--regions", "--chips"),
+    "Images and labels": IMAGES,
+    "Feature vectors": TRAINING,
     "Discriminators": ("--bits", "--address-bits", "--rams", "--bleach", "--balance"),
-    "Other classifiers": ("--luts-per-pixel", "--neighbourhood", "--pareto", "--trials"),
+    "Other classifiers": OTHERS,
 }
 
 
@@ -85,23 +105,30 @@ SECTIONS = {
 @reading_options
 @click.option("--regions", type=file, help="Read chip,label,x,y,width,height from this CSV.")
 @click.option("--chips", type=folder, help="Find the chips of --regions in this folder.")
+@table_option
+@label_option
+@thermometer_option
+@levels_option
+@words_option
+@mapping_option
+@cross_validate_option
 @bits_option
 @click.option(
     "--address-bits",
-    type=click.IntRange(1, 20),
+    type=click.IntRange(1, MAX_ADDRESS_BITS),
     metavar="N",
-    help="Set the address bits of a RAM.  [default: 4]",
+    help="Set the address bits of a RAM.  [default: 4; tables: 6]",
 )
 @click.option(
     "--rams",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Set the RAMs of a discriminator.  [default: 16]",
+    help="Set a discriminator's RAMs.  [default: 16; tables: to read all bits]",
 )
 @click.option(
     "--bleach",
     type=BleachingType(),
-    help="Set the bleaching threshold, or cross-validate it.  [default: auto]",
+    help="Set the bleaching threshold, or search it.  [default: auto]",
 )
 @click.option(
     "--balance", is_flag=True, default=None, help="Weigh all classes equally, so that rare ones are found."
@@ -138,6 +165,8 @@ def train_command(
     reading: Reading,
     regions: Path | None,
     chips: Path | None,
+    table: Path | None,
+    label: str | None,
     luts_per_pixel: int | None,
     neighbourhood: str | None,
     pareto: bool,
@@ -145,15 +174,46 @@ def train_command(
     seed: int,
     output: Path,
     as_json: bool,
+    thermometer: Spacing,
+    levels: int,
+    words: FixedPoint | None,
+    mapping: str,
+    seeds: int,
     **discriminators: Any,
 ) -> None:
-    """Train a classifier of pixels on labelled images, or on embedded landscapes if none are given.
+    """Train a classifier of pixels on labelled images, or of feature vectors on a table.
 
     \b
     Examples:
       wnn2hdl train --images IMAGES --masks MASKS -o model.json
-      wnn2hdl train --regions regions.csv --chips CHIPS --luts-per-pixel 2 -o model.json
+      wnn2hdl train --table data.csv --label COLUMN --levels 16 -o model.json
     """
+    if table is not None:
+        refuse((*IMAGES, *OTHERS, "--bits", "--balance"), "a table has no pictures")
+        bleach = discriminators["bleach"]
+        make_folder(output.parent)
+        with held(output, "model"), progress() as report:
+            summary = train_on_table(
+                table,
+                label,
+                TableOptions(
+                    levels=levels,
+                    thermometer=thermometer,
+                    words=words,
+                    address_bits=discriminators["address_bits"] or TableOptions.address_bits,
+                    rams=discriminators["rams"],
+                    per_class=mapping == "per-class",
+                    bleaching=bleach if isinstance(bleach, int) else None,
+                ),
+                seed=seed,
+                seeds=seeds,
+                command=spoken_command({"output", "as_json"}),
+                output=output,
+                progress=report,
+            )
+        emit(summary, table_sentence(summary), as_json=as_json)
+        return
+    refuse(TRAINING, "only a table has feature vectors, and none is given with --table")
     dataset = labelled(
         images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
     )

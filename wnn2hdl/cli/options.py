@@ -1,7 +1,7 @@
 """Options that several commands share."""
 
 import shlex
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -105,6 +105,24 @@ def spoken_command(leave_out: Container[str]) -> str:
             spoken = getattr(parameter.type, "spoken", str)
             words.append(str(value.resolve()) if isinstance(value, Path) else spoken(value))
     return shlex.join(words)
+
+
+def refuse(options: Iterable[str], fault: str) -> None:
+    """Raise InputError, with this fault, if the user gave one of these options.
+
+    Args:
+        options: by their long names, as in ``--seed``.
+        fault: why they cannot be used.
+    """
+    context = click.get_current_context()
+    given = [
+        name
+        for parameter in context.command.params
+        for name in set(parameter.opts) & set(options)
+        if context.get_parameter_source(str(parameter.name)) is ParameterSource.COMMANDLINE
+    ]
+    if given:
+        raise InputError(fault, value=" ".join(given), hint="leave these options out")
 
 
 def labelled(

@@ -1,10 +1,12 @@
-"""Feature vectors with labels, from a CSV file."""
+"""Feature vectors with labels, from a CSV file or from NumPy arrays."""
 
 import csv
 import math
+import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,18 +29,25 @@ class FeatureTable:
     labels: tuple[str, ...]
 
 
-def read_table(path: Path, label: str) -> FeatureTable:
-    """Read a CSV file whose first line names the columns.
+def read_table(path: Path, label: str | None, part: Literal["train", "test"] = "test") -> FeatureTable:
+    """Read a CSV file whose first line names the columns, or the arrays of an ``.npz`` file.
 
     Args:
-        path: the file.
-        label: the column of class names; all others are features.
+        path: the file, recognised by its content. Arrays are ``x_train`` and ``y_train``, or ``x_test`` and
+            ``y_test``: numbers ``[samples, …]``, whose further axes are flattened, and a label each.
+        label: of a CSV file the column of class names, all others being features; None for arrays.
+        part: which of the arrays.
 
     Raises:
-        InputError: the file cannot be read, has no such column or no rows, names a column twice, or a row
-            has another length, no label, or a feature that is not a finite number.
+        InputError: the file cannot be read, has no such column or arrays or no rows, names a column twice,
+            or a row has another length, no label, or a feature that is not a finite number; or a label
+            column is named for arrays, or none for a CSV file.
     """
     try:
+        if zipfile.is_zipfile(path):
+            return _arrays(path, label, part)
+        if label is None:
+            raise InputError("which column has the labels?", value=path, hint="name it with --label")
         with path.open(encoding="utf-8-sig", newline="") as stream:
             return _table(csv.reader(stream, strict=True), path, label)
     except OSError as error:
@@ -47,6 +56,40 @@ def read_table(path: Path, label: str) -> FeatureTable:
         raise InputError(
             "not a CSV table", value=f"{path} ({error})", hint="save it as UTF-8 text with commas"
         ) from error
+
+
+def _arrays(path: Path, label: str | None, part: str) -> FeatureTable:
+    if label is not None:
+        raise InputError("arrays have no columns", value=f"--label {label}", hint="leave --label out")
+    names = (f"x_{part}", f"y_{part}")
+    try:
+        # Nothing is unpickled, so nothing in the file is run.
+        with np.load(path, allow_pickle=False) as arrays:
+            missing = [name for name in names if name not in arrays]
+            if missing:
+                raise InputError(
+                    "the file has no such array",
+                    value=f"{missing[0]} in {path}",
+                    hint=f"it has {', '.join(list(arrays)[:20])}",
+                )
+            features, labels = (arrays[name] for name in names)
+    except (ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError("not a file of NumPy arrays", value=f"{path} ({error})") from error
+    if features.dtype.kind not in "biuf" or labels.dtype.kind not in "biuU":
+        raise InputError(
+            "features must be numbers, and labels whole numbers or texts",
+            value=f"{features.dtype} and {labels.dtype} in {path}",
+        )
+    if features.ndim < 2 or not features.size or labels.shape != features.shape[:1]:
+        raise InputError(
+            "there must be one label for each row of features",
+            value=f"shapes {list(features.shape)} and {list(labels.shape)} in {path}",
+        )
+    rows = features.reshape(len(features), -1).astype(np.float64)
+    if not np.isfinite(rows).all():
+        raise InputError("a feature is not a finite number", value=path, hint="fill or drop such rows")
+    columns = tuple(f"x{position}" for position in range(rows.shape[1]))
+    return FeatureTable(columns, rows, tuple(map(str, labels.tolist())))
 
 
 def _table(lines: Iterator[list[str]], path: Path, label: str) -> FeatureTable:

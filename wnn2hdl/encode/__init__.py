@@ -3,12 +3,12 @@
 from typing import TYPE_CHECKING, Any
 
 from wnn2hdl.encode.bits import high_bits, parse_bits
-from wnn2hdl.encode.thermometer import fit_thermometer
+from wnn2hdl.encode.thermometer import Spacing, fit_thermometer, whole_words
 
 if TYPE_CHECKING:
     from wnn2hdl.encode.transformer import ThermometerEncoder
 
-__all__ = ["ThermometerEncoder", "fit_thermometer", "high_bits", "parse_bits"]
+__all__ = ["Spacing", "ThermometerEncoder", "fit_thermometer", "high_bits", "parse_bits", "whole_words"]
 
 
 def __getattr__(name: str) -> Any:

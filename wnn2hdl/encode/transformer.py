@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from wnn2hdl.encode.thermometer import fit_thermometer
+from wnn2hdl.encode.thermometer import Spacing, fit_thermometer
 
 
 class ThermometerEncoder(TransformerMixin, BaseEstimator):
@@ -15,18 +15,20 @@ class ThermometerEncoder(TransformerMixin, BaseEstimator):
 
     Args:
         bits: thresholds wanted for each feature.
+        spacing: where they lie.
 
     Attributes:
         thermometer_: the fitted encoder.
     """
 
-    def __init__(self, bits: int = 8) -> None:
+    def __init__(self, bits: int = 8, spacing: Spacing = "quantiles") -> None:
         self.bits = bits
+        self.spacing = spacing
 
     def fit(self, X: ArrayLike, y: object = None) -> Self:  # noqa: ARG002 - the interface passes y
         """Fit the thresholds to ``X``, finite numbers ``[samples, features]``."""
         array = validate_data(self, X, dtype=np.float64, ensure_min_samples=2)
-        self.thermometer_ = fit_thermometer(array, self.bits)
+        self.thermometer_ = fit_thermometer(array, self.bits, self.spacing)
         return self
 
     def transform(self, X: ArrayLike) -> NDArray[np.bool_]:

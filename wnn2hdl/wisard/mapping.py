@@ -4,11 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import MAX_TABLE_INPUTS
+from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 
 
-def draw_mapping(bits: int, rams: int, address_bits: int, seed: int) -> NDArray[np.int64]:
-    """Draw a random mapping, the same for all classes.
+def draw_mapping(bits: int, rams: int, address_bits: int, seed: int, groups: int = 1) -> NDArray[np.int64]:
+    """Draw a random mapping, the same for all classes or one for each.
 
     Each RAM takes the ``address_bits`` inputs that have been read least so far, ties broken at random. So no
     RAM reads an input twice, and how often two inputs are read differs by at most one, whether or not
@@ -19,20 +19,21 @@ def draw_mapping(bits: int, rams: int, address_bits: int, seed: int) -> NDArray[
         rams: k, RAMs of a discriminator.
         address_bits: n, address bits of a RAM.
         seed: of `numpy.random.default_rng`.
+        groups: mappings drawn: 1, or the number of classes.
 
     Returns:
-        int64 ``[1, k, n]``, indices of input bits, as `WisardModel.mapping`.
+        int64 ``[groups, k, n]``, indices of input bits, as `WisardModel.mapping`.
 
     Raises:
         InputError: no RAM, or more address bits than input bits or than a RAM may have.
     """
     if rams < 1:
         raise InputError("a discriminator needs at least one RAM", value=rams, hint="choose 1 or more")
-    if not 1 <= address_bits <= MAX_TABLE_INPUTS:
+    if not 1 <= address_bits <= MAX_ADDRESS_BITS:
         raise InputError(
             "a RAM cannot have this number of address bits",
             value=address_bits,
-            hint=f"choose 1 to {MAX_TABLE_INPUTS}",
+            hint=f"choose 1 to {MAX_ADDRESS_BITS}",
         )
     if address_bits > bits:
         raise InputError(
@@ -41,10 +42,11 @@ def draw_mapping(bits: int, rams: int, address_bits: int, seed: int) -> NDArray[
             hint=f"choose at most {bits} address bits or more input bits",
         )
     rng = np.random.default_rng(seed)
-    reads = np.zeros(bits, dtype=np.int64)
-    mapping = np.empty((1, rams, address_bits), dtype=np.int64)
-    for ram in range(rams):
-        chosen = np.lexsort((rng.random(bits), reads))[:address_bits]
-        reads[chosen] += 1
-        mapping[0, ram] = chosen
+    mapping = np.empty((groups, rams, address_bits), dtype=np.int64)
+    for group in range(groups):
+        reads = np.zeros(bits, dtype=np.int64)
+        for ram in range(rams):
+            chosen = np.lexsort((rng.random(bits), reads))[:address_bits]
+            reads[chosen] += 1
+            mapping[group, ram] = chosen
     return mapping

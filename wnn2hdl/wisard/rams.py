@@ -108,16 +108,31 @@ def winners(
     Returns:
         int64 ``[T, S]``; ties go to the lowest class index.
     """
-    # A RAM's level is how many thresholds its count reaches; under threshold t it is silent if its level is
-    # at most t. So one running sum over a histogram of levels answers for all thresholds together.
-    bins = len(thresholds) + 1
     patterns = where.shape[2]
-    offsets = np.arange(patterns) * bins
     silent = np.empty((len(counts), patterns, len(thresholds)), dtype=np.int64)
     for owner, discriminator in enumerate(counts):
-        reached = np.take_along_axis(discriminator, where[owner % len(where)], axis=1)
-        levels = np.searchsorted(thresholds, reached - (owner == left_out), side="right")
-        levels += offsets
-        histogram = np.bincount(levels.ravel(), minlength=patterns * bins).reshape(patterns, bins)
-        np.cumsum(histogram[:, :-1], axis=1, out=silent[owner])
+        known, seen = discriminator - (owner == left_out), where[owner % len(where)]
+        if known.shape[1] > patterns:
+            levels = np.searchsorted(thresholds, np.take_along_axis(known, seen, axis=1), side="right")
+        else:
+            levels = np.take_along_axis(np.searchsorted(thresholds, known, side="right"), seen, axis=1)
+        silent[owner] = silent_rams(levels, len(thresholds))
     return np.asarray(silent.argmin(axis=0).T)
+
+
+def silent_rams(levels: NDArray[np.int64], thresholds: int) -> NDArray[np.int64]:
+    """How many RAMs of a discriminator stay silent under each of several thresholds.
+
+    Args:
+        levels: int64 ``[k, S]``, how many of the thresholds the count at each RAM's address reaches.
+        thresholds: how many there are.
+
+    Returns:
+        int64 ``[S, thresholds]``, for thresholds that rise.
+    """
+    # Under threshold t a RAM is silent if its level is at most t, so one running sum over a histogram of
+    # levels answers for all thresholds together.
+    bins, patterns = thresholds + 1, levels.shape[1]
+    places = levels + np.arange(patterns) * bins
+    histogram = np.bincount(places.ravel(), minlength=patterns * bins).reshape(patterns, bins)
+    return np.asarray(np.cumsum(histogram[:, :-1], axis=1))

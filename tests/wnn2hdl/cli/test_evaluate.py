@@ -177,7 +177,7 @@ def test_a_table_of_feature_vectors_has_wilsons_interval(
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("--table", "t.csv"), "these options go together: --table and --label"),
+        (("--label", "class"), "only a table has feature vectors, and none is given with --table: --label"),
         (("--table", "t.csv", "--label", "class", "--images", "."), "a table has no pictures"),
         (("--table", "t.csv", "--label", "class"), "the model does not classify feature vectors"),
     ],

@@ -131,3 +131,59 @@ def test_pixels_left_out_are_reported_and_the_command_can_be_repeated(
     assert "--ignore '7,#ff00ff' --scale 0.0:255.0 --bits R7,G7" in training["command"]
     again = run("evaluate", tmp_path / "m.json", *words[1:5], "--ignore", 7)
     assert "37.50% of the pixels left out" in again.stdout
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    """Sixty rows: "high" where both of two real features are."""
+    rng = np.random.default_rng(0)
+    rows = rng.random((60, 2)).round(3)
+    names = np.where(rows.min(axis=1) > 0.4, "high", "low")
+    path = tmp_path / "t.csv"
+    path.write_text("a,b,class\n" + "".join(f"{a},{b},{name}\n" for (a, b), name in zip(rows, names)))  # noqa: B905
+    return path
+
+
+def test_a_table_of_features_is_learned(run: Run, table: Path, tmp_path: Path) -> None:
+    model = tmp_path / "m.json"
+    words = ("--table", table, "--label", "class", "--input", "UQ0.6", "--cross-validate", 2, "-o", model)
+    data = json.loads(run("train", *words, "--json").stdout)
+    assert (data["features"], data["rows"], data["input"]) == (2, 60, "UQ0.6")
+    validation = data["cross_validation"]
+    assert [one["seed"] for one in validation["seeds"]] == [0, 1]
+    for one in validation["seeds"]:
+        assert one["interval"][0] < one["accuracy"] < one["interval"][1]
+    training = json.loads(model.read_text())["training"]
+    assert training["cross_validation"] == validation
+    assert training["command"] == (
+        f"wnn2hdl train --table {table} --label class --input UQ0.6 --cross-validate 2"
+    )
+    measured = json.loads(run("evaluate", model, "--table", table, "--label", "class", "--json").stdout)
+    assert measured["accuracy"] > validation["accuracy"]
+    assert "seed 1: accuracy 0." in run("train", *words).stdout
+
+
+def test_features_without_a_format_are_reported_as_real_numbers(
+    run: Run, table: Path, tmp_path: Path
+) -> None:
+    words = ("--table", table, "--label", "class", "--thermometer", "gaussian", "--mapping", "per-class")
+    done = run("train", *words, "--cross-validate", 0, "-o", tmp_path / "m.json")
+    assert "as real numbers: state a format before compiling" in done.stdout
+    assert "cross-validation" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (("--label", "class"), "only a table has feature vectors, and none is given with --table: --label"),
+        (("--levels", "8"), "only a table has feature vectors"),
+        (("--table", "t.csv", "--images", "."), "a table has no pictures: --images; leave these options out"),
+        (("--table", "t.csv", "--pareto"), "a table has no pictures: --pareto"),
+        (("--table", "t.csv", "--input", "16"), "'16' is not a format of words, as Q3.12 or UQ8.0"),
+    ],
+)
+def test_options_of_tables_and_of_pictures_do_not_mix(
+    run: Run, tmp_path: Path, words: tuple[str, ...], complaint: str
+) -> None:
+    assert complaint in run("train", *words, "-o", tmp_path / "m.json").complaint()
+    assert not (tmp_path / "m.json").exists()

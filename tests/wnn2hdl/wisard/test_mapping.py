@@ -25,12 +25,20 @@ def test_a_seed_gives_the_same_mapping_and_another_seed_another() -> None:
     assert not np.array_equal(first, draw_mapping(12, 16, 4, 1))
 
 
+def test_each_class_can_have_its_own_mapping() -> None:
+    mapping = draw_mapping(12, 16, 4, 0, groups=3)
+    assert mapping.shape == (3, 16, 4)
+    assert np.array_equal(mapping[:1], draw_mapping(12, 16, 4, 0))
+    assert (mapping[1] != mapping[2]).any()
+    assert all(np.bincount(group.ravel(), minlength=12).max() <= 6 for group in mapping)
+
+
 @pytest.mark.parametrize(
     ("bits", "rams", "address_bits", "line"),
     [
         (12, 0, 4, "at least one RAM: 0; choose 1 or more"),
-        (12, 4, 0, "this number of address bits: 0; choose 1 to 20"),
-        (99, 4, 21, "this number of address bits: 21; choose 1 to 20"),
+        (12, 4, 0, "this number of address bits: 0; choose 1 to 64"),
+        (99, 4, 65, "this number of address bits: 65; choose 1 to 64"),
         (12, 4, 13, "more address bits than the network has input bits: 13 of 12; choose at most 12"),
     ],
 )
