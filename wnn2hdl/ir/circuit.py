@@ -6,14 +6,14 @@ A circuit has ports, nodes that are connected by words of bits, and care sets. A
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar
 
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.nodes import Leaf, Table
 from wnn2hdl.ir.verilog_text import check_comment, check_identifier
-from wnn2hdl.ir.wires import Bits, Port, Word, read_word, width_of
+from wnn2hdl.ir.wires import Bits, Port, Slice, Word, read_word, width_of
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,8 @@ class Circuit:
         nodes: in topological order.
         outputs: the output ports and the words that drive them.
         care: the values of words that matter; a word that is not named here is cared for altogether.
+        carries: for signals of the model by number, the output bit or the constant that they are here: for
+            bits of the encoder, or for tables of the last layer. To a proof this is a hint, which it proves.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Circuit:
     nodes: "tuple[Node, ...]"
     drivers: Mapping[str, Word]
     care: tuple[Care, ...] = ()
+    carries: Mapping[int, Slice | bool] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         # Behind a prefix, a reserved word is an ordinary name.
@@ -70,6 +73,10 @@ class Circuit:
             self._check(care.word, widths, "the care set")
             if width_of(care.word) != care.allowed.width:
                 raise ValueError(f"a care set of {care.allowed.width} bits is put on {care.word}")
+        outputs = {port.name: port.width for port in self.outputs}
+        for number, bit in self.carries.items():
+            if isinstance(bit, Slice) and not 0 <= bit.low < bit.low + bit.width <= outputs.get(bit.net, 0):
+                raise ValueError(f"{self.name} carries signal {number} in {bit}, which is not an output")
 
     def _check(self, word: Word, widths: Mapping[str, int], reader: str) -> None:
         if not word:

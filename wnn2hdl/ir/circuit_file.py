@@ -9,7 +9,7 @@ from wnn2hdl.ir.circuit import Care, Circuit, Instance, Node
 from wnn2hdl.ir.network import LutNetwork
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
 from wnn2hdl.ir.tables import TruthTable
-from wnn2hdl.ir.wires import Port, word_from_json, word_to_json
+from wnn2hdl.ir.wires import Port, Slice, word_from_json, word_to_json
 
 
 def circuit_to_json(circuit: Circuit) -> list[dict[str, Any]]:
@@ -22,6 +22,10 @@ def circuit_to_json(circuit: Circuit) -> list[dict[str, Any]]:
             "nodes": [_node_to_json(node) for node in definition.nodes],
             "outputs": {port: word_to_json(word) for port, word in definition.drivers.items()},
             "care": [{"word": word_to_json(care.word), **care.allowed.to_json()} for care in definition.care],
+            "carries": {
+                str(number): bit if isinstance(bit, bool) else str(bit)
+                for number, bit in definition.carries.items()
+            },
         }
         for name, definition in circuit.definitions().items()
     ]
@@ -39,6 +43,10 @@ def circuit_from_json(data: Any) -> Circuit:
                 tuple(_node_from_json(node, known) for node in item["nodes"]),
                 {str(port): word_from_json(word) for port, word in item["outputs"].items()},
                 tuple(Care(word_from_json(care["word"]), care_from_json(care)) for care in item["care"]),
+                {
+                    int(number): bit if isinstance(bit, bool) else Slice.parse(bit)
+                    for number, bit in item["carries"].items()
+                },
             )
             if known.setdefault(circuit.name, circuit) is not circuit:
                 raise ValueError(f"two circuits are called {circuit.name}")

@@ -42,7 +42,8 @@ def encoder_circuit(encoder: Encoder, read: tuple[int, ...]) -> Circuit:
     else:
         bits = [Slice("features", position) for position in read]
     summary = f"Encoder of {len(read)} bits."
-    return Circuit("encoder", summary, (features,), tuple(nodes), {"bits": tuple(bits)})
+    carries = {position: Slice("bits", place) for place, position in enumerate(read)}
+    return Circuit("encoder", summary, (features,), tuple(nodes), {"bits": tuple(bits)}, carries=carries)
 
 
 def _thermometer(encoder: Thermometer, read: tuple[int, ...], nodes: list[Table]) -> list[Slice]:

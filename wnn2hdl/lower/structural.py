@@ -15,6 +15,7 @@ from wnn2hdl.ir.models.base import ZERO
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table
 from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.lower.encoder import encoder_circuit, features_port
+from wnn2hdl.lower.pieces import divided
 from wnn2hdl.minimise.sharing import share
 
 CORE = "core"
@@ -44,10 +45,14 @@ def network(model: VotingModel) -> Circuit:
         InputError: as `core`, or the encoder reads numbers of no stated format.
     """
     features = features_port(model.encoder)
-    shared = share(core(model), implied(model.encoder), known_bits(model.encoder))
+    layers, owners = _layers(model)
+    shared = share(_core(model, layers, owners), implied(model.encoder), known_bits(model.encoder))
+    voters = [_name(len(layers) - 1, index) for index in range(len(owners))]
+    carried = {index: shared.found.get(voter, Slice(voter)) for index, voter in enumerate(voters)}
     encoder = encoder_circuit(model.encoder, shared.read)
     first = Instance("encode", encoder, {"features": features.word})
-    second = Instance("decide", shared.circuit, {"bits": (Slice("encode.bits", 0, len(shared.read)),)})
+    decide = divided(shared.circuit, carried)
+    second = Instance("decide", decide, {"bits": (Slice("encode.bits", 0, len(shared.read)),)})
     ((net, width),) = second.drives.items()
     return Circuit(
         NETWORK,
@@ -65,7 +70,10 @@ def core(model: VotingModel) -> Circuit:
         InputError: a table has more inputs than can be enumerated, or the bleaching is found again for each
             sample.
     """
-    layers, owners = _layers(model)
+    return _core(model, *_layers(model))
+
+
+def _core(model: VotingModel, layers: list[Layer], owners: NDArray[np.integer]) -> Circuit:
     bits = Port("bits", model.encoder.width)
     nets = [Slice("bits", position) for position in range(bits.width)]
     nodes: list[Table | Sum | ArgMax] = []
@@ -75,9 +83,7 @@ def core(model: VotingModel) -> Circuit:
             read, reduced = _distinct(mapping, contents)
             names = tuple(f"i{position}" for position in range(len(read)))
             function = TruthTable.exact(names, ("fires",), reduced[:, np.newaxis])
-            tables.append(
-                Table(f"node_{number}_{index}", tuple(nets[position] for position in read), function)
-            )
+            tables.append(Table(_name(number, index), tuple(nets[position] for position in read), function))
         nodes += tables
         nets = [Slice(table.name) for table in tables]
     votes = []
@@ -99,6 +105,10 @@ def core(model: VotingModel) -> Circuit:
         {"class_bits": (Slice("winner", 0, winner.drives["winner"]),)},
         (Care(bits.word, implied(model.encoder)),),
     )
+
+
+def _name(layer: int, index: int) -> str:
+    return f"node_{layer}_{index}"
 
 
 def implied(encoder: Encoder) -> CareSet:

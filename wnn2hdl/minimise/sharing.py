@@ -5,11 +5,12 @@ equal its model on every input.
 """
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from wnn2hdl.ir import TruthTable, codes_to_bits
+from wnn2hdl.ir import TruthTable
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit, Node
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table
@@ -27,10 +28,13 @@ class Shared:
     Attributes:
         circuit: reads of its one input port only what is left.
         read: which bits of the port of the circuit before these are, ascending.
+        found: what became of a net of one bit that is no more: another net's bit, a bit of the port, or a
+            constant.
     """
 
     circuit: Circuit
     read: tuple[int, ...]
+    found: Mapping[str, Bit]
 
 
 def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shared:
@@ -63,14 +67,14 @@ def share(circuit: Circuit, care: CareSet, known: dict[int, bool | int]) -> Shar
                 seen[simple] = Slice(node.name)
                 nodes.append(_table(node, *simple))
         elif isinstance(node, Sum):
-            nodes.append(_sum(node, alias, Slice(port.name)))
+            nodes += _sum(node, alias, Slice(port.name))
         elif isinstance(node, ArgMax):
             widths = {net: width for other in nodes for net, width in other.drives.items()}
             words = tuple((Slice(word[0].net, 0, widths[word[0].net]),) for word in node.words)
             nodes.append(replace(node, words=words))
         else:
             nodes.append(node)
-    return _without_unread(circuit, nodes)
+    return _without_unread(circuit, nodes, alias)
 
 
 def _simplified(
@@ -112,11 +116,18 @@ def _table(node: Table, inputs: tuple[Slice, ...], packed: bytes) -> Table:
     return Table(node.name, inputs, function)
 
 
-def _sum(node: Sum, alias: dict[Slice, Bit], any_bit: Slice) -> Sum | Table:
+def _sum(node: Sum, alias: dict[Slice, Bit], any_bit: Slice) -> list[Node]:
     """Constants become an offset, and a bit that is added twice weighs twice.
 
-    A sum of constants alone becomes a table that does not read its one input, ``any_bit``.
+    Of a sum of constants alone the last one stays a bit: a table that does not read its one input,
+    ``any_bit``.
     """
+    constants = [alias.get(bit, bit) for bit in single_bits(node.word)]
+    if all(isinstance(found, bool) for found in constants):
+        function = TruthTable.exact(("any",), ("fires",), np.full((2, 1), constants[-1]))
+        last = Table(f"{node.name}_last", (any_bit,), function)
+        alias[single_bits(node.word)[-1]] = Slice(last.name)
+        return [last, *_sum(node, alias, any_bit)]
     weights: Counter[Slice] = Counter()
     offset = node.offset
     for bit, weight in zip(single_bits(node.word), node.weights, strict=True):
@@ -125,16 +136,11 @@ def _sum(node: Sum, alias: dict[Slice, Bit], any_bit: Slice) -> Sum | Table:
             offset += weight * found
         else:
             weights[found] += weight
-    if not weights:
-        width = max(offset.bit_length(), 1)
-        values = np.tile(codes_to_bits(offset, width), (2, 1))
-        names = tuple(f"sum{position}" for position in range(width))
-        return Table(node.name, (any_bit,), TruthTable.exact(("any",), names, values))
-    return replace(node, word=tuple(weights), weights=tuple(weights.values()), offset=offset)
+    return [replace(node, word=tuple(weights), weights=tuple(weights.values()), offset=offset)]
 
 
-def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
-    """Nodes that lead to an output, and the bits of the port that they read."""
+def _without_unread(circuit: Circuit, nodes: list[Node], alias: Mapping[Slice, Bit]) -> Shared:
+    """Nodes that lead to an output, the bits of the port that they read, and what the others became."""
     (port,) = circuit.inputs
     needed = {bit.net for word in circuit.drivers.values() for bit in word}
     kept: list[Node] = []
@@ -148,10 +154,11 @@ def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
     )
     place = {position: i for i, position in enumerate(read)}
 
+    def placed(bit: Slice) -> Slice:
+        return Slice(bit.net, place[bit.low]) if bit.net == port.name else bit
+
     def moved(word: Word) -> Word:
-        return tuple(
-            Slice(bit.net, place[bit.low]) if bit.net == port.name else bit for bit in single_bits(word)
-        )
+        return tuple(map(placed, single_bits(word)))
 
     moved_nodes = [
         replace(node, word=moved(node.word)) if isinstance(node, Table | Sum) else node for node in kept
@@ -159,4 +166,11 @@ def _without_unread(circuit: Circuit, nodes: list[Node]) -> Shared:
     result = replace(
         circuit, inputs=(replace(port, width=max(len(read), 1)),), nodes=tuple(moved_nodes), care=()
     )
-    return Shared(result, tuple(read))
+    driven = {net for node in kept for net in node.drives}
+    found: dict[str, Bit] = {
+        gone.net: bit if isinstance(bit, bool) else placed(bit)
+        for gone, bit in alias.items()
+        if gone.net != port.name
+        and (isinstance(bit, bool) or bit.net in driven or (bit.net == port.name and bit.low in place))
+    }
+    return Shared(result, tuple(read), found)

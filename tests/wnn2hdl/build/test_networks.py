@@ -25,7 +25,8 @@ def test_a_network_is_built_proved_and_verified(tmp_path: Path) -> None:
     built = compile_model(lut_network(2), folder, CompileOptions(input="Q2.4"), silent)
     assert built.failure is None
     report = json.loads((folder / "report.json").read_text())
-    assert set(report["parts"]) == {"encoder", "core", "network", "sobel"}
+    pieces = {"encoder", "tables", "sum_0", "winner"}
+    assert set(report["parts"]) == {*pieces, "core", "network", "sobel"}
     assert report["proof"]["status"] == "proved"
     assert report["options"]["simulated_vectors"] == {"network": 10_240}
     assert (folder / "net.v").read_text().count("module net_") >= 3

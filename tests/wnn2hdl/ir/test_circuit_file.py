@@ -41,7 +41,8 @@ def every_kind() -> Circuit:
         Register("late", (Slice("ones", 0, 3), Slice("same", 0, 2), Slice("high"), Slice("best")), 2),
     )
     care = (Care(A.word, Implied(3, ((0, 1, 2),))),)
-    return Circuit("outer", "Outer.", (A, B), nodes, {"y": (Slice("late", 0, 7),)}, care)
+    carries: dict[int, Slice | bool] = {0: True, 3: Slice("y", 2)}
+    return Circuit("outer", "Outer.", (A, B), nodes, {"y": (Slice("late", 0, 7),)}, care, carries)
 
 
 EVERY_KIND = circuit_to_json(every_kind())
@@ -65,6 +66,10 @@ def test_care_sets_and_definitions_go_along() -> None:
         ("inner", "codes"),
         ("outer", "implied"),
     ]
+
+
+def test_what_a_circuit_carries_goes_along() -> None:
+    assert circuit_from_json(EVERY_KIND).carries == {0: True, 3: Slice("y", 2)}
 
 
 ANYTHING = st.recursive(
@@ -116,6 +121,7 @@ def definition(name: str, **changes: Any) -> dict[str, Any]:
         "nodes": [],
         "outputs": {"y": ["a[0:0]"]},
         "care": [],
+        "carries": {},
     }
     return whole | changes
 
@@ -130,6 +136,8 @@ def definition(name: str, **changes: Any) -> dict[str, Any]:
         ([definition("c", nodes=[{"kind": "sum", "name": 3, "word": ["a[0:0]"]}])], "3 is not a name"),
         ([definition("c", nodes=[{"kind": "instance", "name": "i", "circuit": "x", "inputs": {}}])], "x"),
         ([definition("c"), definition("c")], "two circuits are called c"),
+        ([definition("c", carries={"0": "y[1:1]"})], "carries signal 0"),
+        ([definition("c", carries={"0": "a[0:0]"})], "which is not an output"),
     ],
 )
 def test_the_fault_is_named(data: Any, message: str) -> None:
