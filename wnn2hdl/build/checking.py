@@ -15,7 +15,7 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.equivalence import Circuit
-from wnn2hdl.verify.proof import Proof, prove, prove_netlists
+from wnn2hdl.verify.proof import Proof, prove, prove_netlists, sides
 
 _MANY = 1 << 16
 """Vectors above which a circuit is simulated in its own process."""
@@ -29,7 +29,8 @@ class Checked:
         syntheses: by part, ``sobel`` among them.
         proof_seconds: wall clock of the proofs of Verilog and netlists together.
         vectors: how many vectors each part was simulated on.
-        remembered: parts whose simulation passed before, on the same vectors.
+        simulated_before: parts whose simulation passed before, on the same vectors.
+        proved_before: parts of which the same Verilog and the same netlist were proved before.
         seconds: when each of the checks and syntheses, which run side by side, was done.
         failure: why the circuit is not the model; None if it is.
     """
@@ -37,7 +38,8 @@ class Checked:
     syntheses: Mapping[str, Synthesis]
     proof_seconds: float
     vectors: Mapping[str, int]
-    remembered: tuple[str, ...]
+    simulated_before: tuple[str, ...]
+    proved_before: tuple[str, ...]
     seconds: Mapping[str, float]
     failure: str | None
 
@@ -56,7 +58,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         design: the design.
         files: its emitted files.
         progress: reports each check that is done.
-        afresh: simulate also what is remembered to have passed before.
+        afresh: simulate and prove also what is remembered to have passed before.
 
     Raises:
         InputError: an emitted file is missing or no text any more.
@@ -64,16 +66,16 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     """
     simulations = _Simulations(design, files, afresh=afresh)
     counted = synthesis_jobs(design, files)
+    specification = design.specification
     emitted = {part: Circuit((counted[part].verilog,), counted[part].top) for part in design.parts}
-    jobs: dict[str, Callable[[], Any]] = {
-        **simulations.jobs,
-        "prove": partial(
-            prove,
-            design.specification,
-            {part: circuit for part, circuit in emitted.items() if part in design.specification.claims},
-        ),
-        "synthesise": partial(synthesise_all, counted),
-    }
+    claimed = {part: circuit for part, circuit in emitted.items() if part in specification.claims}
+    verilog = _Proofs(
+        {part: sides(specification, specification.claims[part], claimed[part]) for part in claimed},
+        afresh=afresh,
+    )
+    jobs: dict[str, Callable[[], Any]] = {**simulations.jobs, "synthesise": partial(synthesise_all, counted)}
+    if verilog.due:
+        jobs["prove"] = partial(prove, specification, {part: claimed[part] for part in verilog.due})
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
     progress("simulating, proving, counting", 0, len(jobs))
@@ -82,24 +84,30 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         seconds[names[position]] = time.perf_counter() - started
         progress("simulating, proving, counting", len(results), len(jobs))
     vectors, mismatch = simulations.outcome(results)
+    verilog.note(results.get("prove", {}))
     syntheses: dict[str, Synthesis] = results["synthesise"]
-    mapped = prove_netlists(
-        {
-            part: (circuit, Circuit((syntheses[part].netlist_verilog,), circuit.top))
-            for part, circuit in emitted.items()
-        },
-        {part: circuit.widths for part, circuit in design.parts.items()},
-    )
+    pairs = {
+        part: (circuit, Circuit((syntheses[part].netlist_verilog,), circuit.top))
+        for part, circuit in emitted.items()
+    }
+    netlists = _Proofs(pairs, afresh=afresh)
+    if netlists.due:
+        widths = {part: circuit.widths for part, circuit in design.parts.items()}
+        netlists.note(prove_netlists({part: pairs[part] for part in netlists.due}, widths))
     failures = [
         mismatch,
-        _refutation(results["prove"], "Verilog"),
-        _refutation(mapped, "mapped netlist"),
+        _refutation(verilog.found, "Verilog"),
+        _refutation(netlists.found, "mapped netlist"),
     ]
-    reason = next((text for text in failures if text), None)
-    proof_seconds = sum(
-        max(proof.seconds for proof in found.values()) for found in (results["prove"], mapped)
+    return Checked(
+        syntheses,
+        verilog.seconds + netlists.seconds,
+        vectors,
+        tuple(simulations.passed),
+        tuple(part for part in emitted if part not in {*verilog.due, *netlists.due}),
+        seconds,
+        next((text for text in failures if text), None),
     )
-    return Checked(syntheses, proof_seconds, vectors, tuple(simulations.passed), seconds, reason)
 
 
 def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[str, Synthesis]:
@@ -128,23 +136,25 @@ class _Simulations:
 
     def __init__(self, design: Design, files: Files, *, afresh: bool) -> None:
         claims = design.specification.claims
-        stimuli = {
-            part: draw
-            for part in design.parts
-            if part in claims and (draw := claims[part].stimulus) is not None
+        counts: dict[str, int] = {}
+        self.keys: dict[str, remembered.Key] = {}
+        for part, circuit in design.parts.items():
+            claim = claims.get(part)
+            if claim is not None and claim.stimulus is not None:
+                inputs = claim.stimulus()
+                answers = claim.answers(inputs)
+                counts[part] = len(next(iter(inputs.values())))
+                self.keys[part] = remembered.simulation_key(circuit, design.style, inputs, answers)
+        self.passed = {
+            part: counts[part] for part, key in self.keys.items() if not afresh and remembered.passed(key)
         }
-        counts = {part: len(next(iter(draw().values()))) for part, draw in stimuli.items()}
-        self.long = [part for part, count in counts.items() if count >= _MANY]
-        self.keys = {part: remembered.simulation_key(design, part) for part in self.long}
-        self.passed = (
-            {} if afresh else {part: counts[part] for part in self.long if remembered.passed(self.keys[part])}
-        )
-        short = [part for part in counts if part not in self.long]
+        parts = [part for part in counts if part not in self.passed]
         self.jobs: dict[str, Callable[[], Any]] = {
             f"simulate {part}": partial(simulate_apart, files.verilog.parent, [part])
-            for part in self.long
-            if part not in self.passed
+            for part in parts
+            if counts[part] >= _MANY
         }
+        short = [part for part in parts if counts[part] < _MANY]
         if short:
             self.jobs["simulate"] = partial(simulate_parts, design, short)
 
@@ -155,11 +165,35 @@ class _Simulations:
             simulated, mismatch = results[name]
             vectors |= simulated
             failure = failure or mismatch
-        if failure is None:
-            for part, key in self.keys.items():
-                if part not in self.passed:
-                    remembered.remember(key)
-        return vectors, failure
+        for part in vectors:
+            remembered.remember(self.keys[part])
+        return {part: vectors[part] for part in self.keys if part in vectors}, failure
+
+
+class _Proofs:
+    """Proofs of one kind, by circuit: remembered ones are left out.
+
+    Attributes:
+        due: the circuits to prove.
+        found: the outcome for each of them.
+    """
+
+    def __init__(self, pairs: Mapping[str, tuple[Circuit, Circuit]], *, afresh: bool) -> None:
+        self.keys = {part: remembered.proof_key(*pair) for part, pair in pairs.items()}
+        self.due = [part for part, key in self.keys.items() if afresh or not remembered.passed(key)]
+        self.found: Mapping[str, Proof] = {}
+
+    @property
+    def seconds(self) -> float:
+        """Wall clock of the call that proved what was due."""
+        return max((proof.seconds for proof in self.found.values()), default=0.0)
+
+    def note(self, found: Mapping[str, Proof]) -> None:
+        """Take the outcomes of what was due, and remember the successes."""
+        self.found = found
+        for part, proof in found.items():
+            if proof.counterexample is None:
+                remembered.remember(self.keys[part])
 
 
 def _refutation(proofs: Mapping[str, Proof], what: str) -> str | None:

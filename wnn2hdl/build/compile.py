@@ -195,7 +195,9 @@ def _report(
             )
             for part, cover in planned.covers.items()
         },
-        proof=Proof(checked.status, METHOD, checked.proof_seconds, checked.failure),
+        proof=Proof(
+            checked.status, METHOD, checked.proof_seconds, checked.failure, before=checked.proved_before
+        ),
         care=_care(design, measured.coverage),
         edges=edges,
         accuracy=measured.accuracy,
@@ -214,7 +216,7 @@ def _report(
             "edge_patterns": edges.patterns,
             "mapping": dict(planned.methods),
             "simulated_vectors": dict(checked.vectors),
-            "simulated_before": ", ".join(checked.remembered),
+            "simulated_before": ", ".join(checked.simulated_before),
             "left_out": {"care": planned.left_out, "test_images": measured.left_out},
         },
         hashes={"model": design.model.digest()},

@@ -8,6 +8,7 @@ import numpy as np
 from wnn2hdl.build.design import Design, Mode
 from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
+from wnn2hdl.build.minimising import minimise_once
 from wnn2hdl.edges import RULES, Agreement, from_file
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, PictureEncoder, Style, WisardModel
@@ -122,7 +123,8 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         care = _care_sets(model, options, seen) if seen is not None else None
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
-    minimised = minimise(target.lower(Ingredients(model, edges, care)), options.effort, progress)
+    lowered = target.lower(Ingredients(model, edges, care))
+    minimised = minimise(lowered, options.effort, progress, by=minimise_once)
     design = Design(
         model,
         edges,

@@ -1,55 +1,90 @@
-"""Simulations that passed before, by the hash of all that they depend on.
+"""Simulations and proofs that passed before, by the hash of all that they depend on.
 
-The matcher depends on no model: it is the same in every build, and its 2**18 vectors take most of the time of
-all simulations. What passed once is not simulated again while its circuit, its vectors and the simulator are
-the same to the byte. `wnn2hdl verify` does not look here.
+What passed once is not done again while its circuit, what it was compared with, the tools and this program's
+own code are the same to the byte. Only success is remembered, and `wnn2hdl verify` does not look here.
 """
 
+import functools
 import hashlib
+import json
 from collections.abc import Mapping
 from importlib.metadata import version
+from pathlib import Path
 
-from amaranth.back import rtlil
-from amaranth.hdl import ClockDomain
-
-from wnn2hdl.build.design import Design
-from wnn2hdl.elaborate import component
-from wnn2hdl.ir.wires import Bits
+import hdl_templates
+import wnn2hdl
+from wnn2hdl.ir import Style
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.circuit_file import circuit_to_json
 from wnn2hdl.synth import cache
+from wnn2hdl.tools import abc_version, find_yosys
+from wnn2hdl.verify.equivalence import Circuit as Module
+from wnn2hdl.verify.proof import METHOD
+from wnn2hdl.verify.specification import Samples
 
-_KIND = "simulations"
+Key = Mapping[str, str]
+
 _PASSED = {"passed": True}
 
 
-def simulation_key(design: Design, part: str) -> dict[str, str]:
-    """All that the simulation of a circuit depends on: its RTLIL, its vectors, the simulator."""
-    claim = design.specification.claims[part]
-    assert claim.stimulus is not None
-    inputs = claim.stimulus()
-    text = rtlil.convert(
-        component(design.parts[part], style=design.style),
-        emit_src=False,
-        missing_domain=lambda domain: ClockDomain(domain, reset_less=True),
-    )
+@functools.cache
+def code_digest() -> str:
+    """The SHA-256 of this program's code: what another state of it found counts for nothing."""
+    digest = hashlib.sha256()
+    for package in (wnn2hdl, hdl_templates):
+        root = Path(str(package.__file__)).parent
+        for path in sorted(root.rglob("*.py")):
+            content = path.read_bytes()
+            digest.update(f"{path.relative_to(root.parent).as_posix()} {len(content)}\n".encode())
+            digest.update(content)
+    return digest.hexdigest()
+
+
+def simulation_key(circuit: Circuit, style: Style, inputs: Samples, answers: Samples) -> Key:
+    """All that a simulation depends on: the circuit and what draws it, vectors and answers, the simulator."""
     return {
-        "circuit": cache.digest(text),
+        "check": "simulation",
+        "circuit": cache.digest(json.dumps(circuit_to_json(circuit))),
+        "style": style,
         "inputs": _digest(inputs),
-        "answers": _digest(claim.answers(inputs)),
+        "answers": _digest(answers),
         "simulator": version("amaranth"),
+        "code": code_digest(),
     }
 
 
-def passed(key: Mapping[str, str]) -> bool:
-    """Whether a simulation of this key has passed."""
-    return cache.load(_KIND, key) == _PASSED
+def proof_key(left: Module, right: Module) -> Key:
+    """All that a proof of equality depends on: both modules with all their sources, the method, the tools."""
+    yosys = find_yosys()
+    return {
+        "check": "proof",
+        "left": _module_digest(left),
+        "right": _module_digest(right),
+        "method": METHOD,
+        "Yosys": f"{yosys.name} {yosys.version}",
+        "ABC": abc_version(),
+        "code": code_digest(),
+    }
 
 
-def remember(key: Mapping[str, str]) -> None:
-    """Note that the simulation of this key has passed."""
-    cache.store(_KIND, key, _PASSED)
+def passed(key: Key) -> bool:
+    """Whether a check of this key has passed."""
+    return cache.load(key["check"], key) == _PASSED
 
 
-def _digest(samples: Mapping[str, Bits]) -> str:
+def remember(key: Key) -> None:
+    """Note that the check of this key has passed."""
+    cache.store(key["check"], key, _PASSED)
+
+
+def _module_digest(module: Module) -> str:
+    digest = hashlib.sha256(f"{module.top} {module.latency}".encode())
+    for text in module.sources:
+        digest.update(hashlib.sha256(text.encode()).digest())
+    return digest.hexdigest()
+
+
+def _digest(samples: Samples) -> str:
     digest = hashlib.sha256()
     for port, bits in samples.items():
         digest.update(f"{port} {bits.shape}".encode())

@@ -79,9 +79,10 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
     with console.capture() as captured:
         console.print(table)
     proof = report["proof"]
+    earlier = f" (before: {', '.join(proof['before'])})" if proof.get("before") else ""
     lines = [
         captured.get().rstrip(),
-        f"proof: {proof['status']} in {proof['seconds']:.1f} s, {proof['method']}",
+        f"proof: {proof['status']} in {proof['seconds']:.1f} s, {proof['method']}{earlier}",
     ]
     for name in ("model", "circuit"):
         accuracy = report["accuracy" if name == "circuit" else "model_accuracy"]

@@ -1,13 +1,29 @@
 """The minimising pass: every truth table of a circuit becomes a network of LUTs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from wnn2hdl.ir import TruthTable
+from wnn2hdl.ir import LutNetwork, TruthTable
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.minimise.espresso import Minimised, espresso
 from wnn2hdl.minimise.portfolio import map_luts
 from wnn2hdl.progress import Progress, reported
+
+
+@dataclass(frozen=True)
+class MinimisedTable:
+    """What a table becomes.
+
+    Attributes:
+        cover: its two-level cover.
+        network: its LUTs.
+        method: how the network was found.
+    """
+
+    cover: Minimised
+    network: LutNetwork
+    method: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +41,25 @@ class MinimisedCircuit:
     methods: dict[str, str]
 
 
-def minimise(circuit: Circuit, effort: int, progress: Progress) -> MinimisedCircuit:
+def minimise_table(table: TruthTable, effort: int) -> MinimisedTable:
+    """Minimise one table; raises CheckError if the result differs from it on a cared-for code."""
+    mapping = map_luts(table, effort=effort)
+    return MinimisedTable(espresso(table), mapping.network, mapping.method)
+
+
+def minimise(
+    circuit: Circuit,
+    effort: int,
+    progress: Progress,
+    by: Callable[[TruthTable, int], MinimisedTable] = minimise_table,
+) -> MinimisedCircuit:
     """Minimise the tables of a circuit; what they give on cared-for inputs stays as it is.
 
     Args:
         circuit: its tables are truth tables.
         effort: 0 to 3, how much work is put into each table.
         progress: reports each table.
+        by: what minimises a table, given the effort.
 
     Raises:
         CheckError: a minimised table differs from its truth table.
@@ -43,10 +71,10 @@ def minimise(circuit: Circuit, effort: int, progress: Progress) -> MinimisedCirc
     for name, table in reported(tables.items(), "minimising tables", len(tables), progress):
         if not isinstance(table.function, TruthTable):
             continue
-        covers[name] = espresso(table.function)
-        mapping = map_luts(table.function, effort=effort)
-        methods[name] = mapping.method
-        mapped[id(table)] = replace(table, function=mapping.network)
+        minimised = by(table.function, effort)
+        covers[name] = minimised.cover
+        methods[name] = minimised.method
+        mapped[id(table)] = replace(table, function=minimised.network)
 
     def change(definition: Circuit) -> Circuit:
         nodes = (mapped.get(id(node), node) if isinstance(node, Table) else node for node in definition.nodes)

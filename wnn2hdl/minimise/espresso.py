@@ -4,6 +4,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from pyeda.boolalg.espresso import DTYPE, FTYPE, RTYPE, get_config, set_config
@@ -47,6 +48,12 @@ class Minimised:
     cubes_before: int
     literals_before: int
 
+    @classmethod
+    def of(cls, table: TruthTable, cover: Cover, method: str) -> Self:
+        """A cover of a table."""
+        codes = int((table.care & table.values.any(axis=1)).sum())
+        return cls(cover, method, codes, codes * len(table.inputs))
+
 
 def espresso(table: TruthTable) -> Minimised:
     """Minimise the ON sets against the don't-cares; with espresso outputs share cubes.
@@ -64,7 +71,7 @@ def espresso(table: TruthTable) -> Minimised:
     cover = Cover(table.inputs, table.outputs, tuple(cubes))
     method = "espresso" if small else "irredundant"
     require_equal(table, cover, f"the {method} cover")
-    return Minimised(cover, method, len(on_codes), len(on_codes) * len(table.inputs))
+    return Minimised.of(table, cover, method)
 
 
 def _espresso_cubes(table: TruthTable, other: int) -> list[Cube]:

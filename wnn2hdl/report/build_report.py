@@ -63,12 +63,15 @@ class Proof:
         method: in words; None if it was not run.
         seconds: wall clock; None if it was not run.
         failure: an input on which circuit and model differ, in words; None if none was found.
+        before: circuits that an earlier build proved, with the same Verilog and netlist, and this one did not
+            prove again.
     """
 
     status: str = "not run"
     method: str | None = None
     seconds: float | None = None
     failure: str | None = None
+    before: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

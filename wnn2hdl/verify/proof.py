@@ -103,16 +103,8 @@ def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[
     """
     started = time.perf_counter()
     claims = {part: specification.claims[part] for part in emitted}
-    differences = find_differences(
-        [
-            (
-                held_in_care(specification, claim, emitted[part]),
-                held_in_care(specification, claim, Circuit((specification.reference,), claim.module)),
-            )
-            for part, claim in claims.items()
-        ],
-        timeout=_SECONDS,
-    )
+    pairs = [sides(specification, claim, emitted[part]) for part, claim in claims.items()]
+    differences = find_differences(pairs, timeout=_SECONDS)
     counterexamples = {
         part: None if values is None else _against_model(claim, emitted[part], values)
         for (part, claim), values in zip(claims.items(), differences, strict=True)
@@ -143,6 +135,12 @@ def prove_netlists(
             counterexamples[part] = Counterexample(part, values, expected, actual)
     seconds = time.perf_counter() - started
     return {part: Proof(METHOD, seconds, found) for part, found in counterexamples.items()}
+
+
+def sides(specification: Specification, claim: Claim, circuit: Circuit) -> tuple[Circuit, Circuit]:
+    """What `prove` compares: a circuit and the reference of its claim, both held in the care set."""
+    reference = Circuit((specification.reference,), claim.module)
+    return held_in_care(specification, claim, circuit), held_in_care(specification, claim, reference)
 
 
 def held_in_care(specification: Specification, claim: Claim, circuit: Circuit) -> Circuit:

@@ -66,14 +66,62 @@ def test_a_netlist_that_is_not_its_verilog_is_found(
     assert checked.failure.startswith("the mapped netlist of the pixel differs from the model ")
 
 
-def test_the_matcher_is_simulated_once_and_remembered(
-    model: WisardModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("WNN2HDL_CACHE", str(tmp_path / "cache"))
+
+
+@pytest.mark.usefixtures("own_cache")
+def test_the_matcher_is_simulated_once_and_remembered(model: WisardModel, tmp_path: Path) -> None:
     design = plan(model, "mine", CompileOptions(target="match"), silent).design
     files = emit(design, tmp_path, sobel_threshold=128)
     first, second = (checking.check(design, files, silent, afresh=False) for _ in range(2))
-    assert first.remembered == ()
-    assert second.remembered == ("match",)
+    assert first.simulated_before == ()
+    assert second.simulated_before == ("match",)
     assert first.vectors == second.vectors == {"match": 2**18}
-    assert checking.check(design, files, silent, afresh=True).remembered == ()
+
+
+@pytest.mark.usefixtures("own_cache")
+def test_what_passed_is_not_done_again_unless_it_is_asked_for(
+    emitted: Emitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = checking.check(*emitted, silent, afresh=False)
+    assert (first.simulated_before, first.proved_before) == ((), ())
+    refuse(monkeypatch)
+    second = checking.check(*emitted, silent, afresh=False)
+    assert (second.simulated_before, second.proved_before) == (("pixel",), ("pixel",))
+    assert (second.vectors, second.status) == (first.vectors, "proved")
+    with pytest.raises(AssertionError, match="done again"):
+        checking.check(*emitted, silent, afresh=True)
+
+
+@pytest.mark.usefixtures("own_cache")
+def test_a_refutation_is_not_remembered(emitted: Emitted, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as spoiling:
+        spoiling.setattr(checking, "synthesise_all", spoiled)
+        for _ in range(2):
+            checked = checking.check(*emitted, silent, afresh=False)
+            assert checked.failure is not None
+            assert checked.proved_before == ()
+    assert checking.check(*emitted, silent, afresh=False).status == "proved"
+
+
+@pytest.mark.usefixtures("own_cache")
+def test_other_verilog_is_proved_although_the_former_was(emitted: Emitted) -> None:
+    design, files = emitted
+    assert checking.check(design, files, silent, afresh=False).status == "proved"
+    files.verilog.write_text(flipped(files.verilog.read_text()))
+    checked = checking.check(design, files, silent, afresh=False)
+    assert checked.failure is not None
+    assert checked.failure.startswith("the Verilog of the pixel differs from the model ")
+    assert checked.proved_before == ()
+
+
+def refuse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let proofs and simulations fail the test."""
+
+    def again(*arguments: object) -> None:
+        raise AssertionError("done again")
+
+    for name in ("prove", "prove_netlists", "simulate_parts"):
+        monkeypatch.setattr(checking, name, again)

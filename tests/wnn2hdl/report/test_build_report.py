@@ -41,7 +41,13 @@ def test_the_keys_that_others_rely_on() -> None:
     )
     assert report["version"] == REPORT_VERSION
     assert report["mode"] == "domain"
-    assert report["proof"] == {"status": "proved", "method": "SAT", "seconds": 0.5, "failure": None}
+    assert report["proof"] == {
+        "status": "proved",
+        "method": "SAT",
+        "seconds": 0.5,
+        "failure": None,
+        "before": (),
+    }
     assert report["care"] == {"codes": 120, "coverage": 0.98, "of": None}
     assert report["accuracy"] == 0.9
     assert report["minimised"]["pixel"]["cubes_after"] == 3

@@ -97,6 +97,13 @@ def test_a_simulation_that_passed_before_is_told_as_such() -> None:
     assert "| edges" not in text
 
 
+def test_a_proof_of_an_earlier_build_is_told_as_such() -> None:
+    text = page(replace(FULL, proof=Proof("proved", "SAT", 0.0, before=("pixel", "edge"))))
+    told = "proved by SAT in 0.00 s; before, with the same Verilog and netlist: pixel, edge."
+    assert told in text
+    assert "before, with" not in page(FULL)
+
+
 def test_it_says_that_yosys_is_not_vivado() -> None:
     assert "**Yosys is not Vivado:**" in page(FULL)
 

@@ -162,6 +162,15 @@ def test_a_simulation_that_passed_before_is_told_as_such(
     assert "options.simulated_before" not in Outline(page).figures
 
 
+def test_a_proof_of_an_earlier_build_is_told_as_such(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    told = "Proved by an earlier build, with the same Verilog and netlist, and not again: "
+    assert told not in build_page(report, networks)
+    report["proof"]["before"] = ["pixel", "edge"]
+    assert f"{told}pixel, edge." in build_page(report, networks)
+
+
 def test_how_the_block_and_its_matcher_add_up_is_said(
     report: dict[str, Any], networks: dict[str, LutNetwork]
 ) -> None:
