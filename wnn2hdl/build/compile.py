@@ -8,19 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.build.checking import Checked, check
-from wnn2hdl.build.classifier import circuit_classifier
-from wnn2hdl.build.design import Design, require_picture_model
+from wnn2hdl.build.design import Design
 from wnn2hdl.build.emission import emit, generators
 from wnn2hdl.build.folder import FAILED, REPORT_FILE, REPORT_PAGE, SAMPLE_FILE, resolved, staged
+from wnn2hdl.build.measuring import Measured, labelled_data, measure
 from wnn2hdl.build.planning import CompileOptions, Plan, plan
 from wnn2hdl.build.reporting import command, evaluation, sample_picture, write_page
-from wnn2hdl.dataset import Dataset, from_masks
+from wnn2hdl.dataset import Dataset
 from wnn2hdl.emit import write_manifest
-from wnn2hdl.errors import CheckError, InputError
-from wnn2hdl.evaluation.accuracy import evaluate, require_same_classes
-from wnn2hdl.evaluation.classifiers import model_classifier
+from wnn2hdl.errors import CheckError
 from wnn2hdl.files import write_json, write_text
-from wnn2hdl.images import MaskFormat, Palette, write_png
+from wnn2hdl.images import write_png
 from wnn2hdl.ir.identifiers import name_from, require_name
 from wnn2hdl.ir.models import AnyModel
 from wnn2hdl.progress import Progress
@@ -88,9 +86,7 @@ def compile_model(
             cannot be written.
         ToolError: an outside program is missing or failed.
     """
-    test_set = _test_set(options)
-    if test_set is not None:
-        require_same_classes(require_picture_model(model).classes, test_set)
+    labelled = labelled_data(model, options)
     name = require_name(options.name) if options.name else name_from(resolved(folder).name)
     clock = _Clock()
     with staged(folder) as staging:
@@ -103,11 +99,11 @@ def compile_model(
         with clock.stage("check and synthesise"):
             checked = check(planned.design, files, progress, afresh=False)
         with clock.stage("evaluate"):
-            measured = _measure(planned.design, test_set, progress)
+            measured = measure(planned.design, labelled, progress)
         report = report_dict(_report(folder.name, planned, options, checked, measured, clock))
         write_json(staging / REPORT_FILE, report)
         write_text(staging / REPORT_PAGE, report_markdown(report))
-        write_png(staging / SAMPLE_FILE, sample_picture(test_set))
+        write_png(staging / SAMPLE_FILE, sample_picture(labelled if isinstance(labelled, Dataset) else None))
         write_page(staging)
         if checked.failure is not None:
             write_text(staging / FAILED, checked.failure + "\n")
@@ -127,52 +123,12 @@ def require_luts(build: Build, max_luts: int) -> None:
         )
 
 
-def _test_set(options: CompileOptions) -> Dataset | None:
-    """The labelled pictures that the options name; raises InputError for half of what it takes."""
-    if options.test_images is None or options.test_masks is None:
-        if options.test_images or options.test_masks:
-            raise InputError(
-                "these options go together", value="--test-images and --test-masks", hint="give both"
-            )
-        if options.palette or options.ignore:
-            raise InputError("--palette and --ignore are for masks", hint="give --test-masks too")
-        return None
-    palette = Palette.read(options.palette) if options.palette else None
-    masks = MaskFormat(palette, frozenset(options.ignore or ()))
-    return from_masks(options.test_images, options.test_masks, masks, options.reading)
-
-
-@dataclass(frozen=True)
-class _Measured:
-    """What labelled images show; None where there were none, or no classifier to show them."""
-
-    accuracy: float | None = None
-    model_accuracy: float | None = None
-    coverage: float | None = None
-    confusion: tuple[tuple[int, ...], ...] | None = None
-    left_out: float | None = None
-
-
-def _measure(design: Design, test_set: Dataset | None, progress: Progress) -> _Measured:
-    if test_set is None or not design.target.classifies:
-        return _Measured()
-    circuit = evaluate(circuit_classifier(design), test_set, progress)
-    model = evaluate(model_classifier(design.picture_model), test_set, progress)
-    return _Measured(
-        circuit.accuracy,
-        model.accuracy,
-        circuit.coverage,
-        tuple(map(tuple, circuit.confusion.sum(axis=0).tolist())),
-        circuit.left_out_share,
-    )
-
-
 def _report(
     name: str,
     planned: Plan,
     options: CompileOptions,
     checked: Checked,
-    measured: _Measured,
+    measured: Measured,
     clock: _Clock,
 ) -> BuildReport:
     design = planned.design
@@ -203,6 +159,7 @@ def _report(
         accuracy=measured.accuracy,
         model_accuracy=measured.model_accuracy,
         confusion=measured.confusion,
+        rows=measured.rows,
         model=model_figures(design.model),
         command=command(name, options),
         evaluation=evaluation(name, options) if measured.accuracy is not None else None,

@@ -43,6 +43,9 @@ class CompileOptions:
         effort: 0 to 3, how long to look for a smaller circuit.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
+        test_table: file of labelled feature vectors for the same, of a model that reads these.
+        label: its column of class names, of a CSV file.
+        raw: whether its features still have to be scaled as the model says.
         palette: file of the classes and what stands for them in the masks.
         ignore: codes of the masks' unlabelled pixels.
         bands: how all of these pictures are read, with `scale` and `alpha`, see `wnn2hdl.raster.Reading`.
@@ -63,6 +66,9 @@ class CompileOptions:
     effort: int = 1
     test_images: Path | None = None
     test_masks: Path | None = None
+    test_table: Path | None = None
+    label: str | None = None
+    raw: bool | None = None
     palette: Path | None = None
     ignore: tuple[int, ...] | None = None
     bands: tuple[int, ...] | None = None

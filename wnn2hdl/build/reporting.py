@@ -142,19 +142,32 @@ def command(name: str, options: CompileOptions) -> str:
     words = ["wnn2hdl", "compile", f"{name}/{MODEL_FILE}", "-o", f"{name}-again"]
     usual = asdict(CompileOptions())
     for option, value in asdict(options).items():
-        if value != usual[option] and option not in _NO_FLAG:
+        if option == "raw" and value is not None:
+            words.append(_scaling(value))
+        elif value != usual[option] and option not in _NO_FLAG:
             words += [_FLAGS.get(option, f"--{option.replace('_', '-')}"), _word(option, value)]
     return shlex.join(words)
 
 
+def _scaling(raw: bool) -> str:
+    return "--raw" if raw else "--scaled"
+
+
 def evaluation(name: str, options: CompileOptions) -> str:
-    """The command that measures a build on its test pictures again; arguments as of `command`."""
-    places = {"--images": options.test_images, "--masks": options.test_masks, "--palette": options.palette}
+    """The command that measures a build on its test data again; arguments as of `command`."""
+    places = {
+        "--images": options.test_images,
+        "--masks": options.test_masks,
+        "--palette": options.palette,
+        "--table": options.test_table,
+    }
     words = ["wnn2hdl", "evaluate", name]
+    if options.raw is not None:
+        words.append(_scaling(options.raw))
     for flag, place in places.items():
         if place is not None:
             words += [flag, str(place.resolve())]
-    for option in ("ignore", "bands", "scale", "alpha"):
+    for option in ("label", "ignore", "bands", "scale", "alpha"):
         value = getattr(options, option)
         if value is not None:
             words += [f"--{option}", _word(option, value)]

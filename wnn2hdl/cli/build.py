@@ -20,6 +20,7 @@ from wnn2hdl.cli.pictures import (
     palette_option,
     scale_option,
 )
+from wnn2hdl.cli.vectors import label_option, raw_option
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style
 from wnn2hdl.ir.models import load_model
@@ -39,6 +40,7 @@ SECTIONS = {
     ),
     "Edge filter": ("--edges", "--edge-images", "--edge-patterns", "--edge-luts"),
     "Pictures": ("--test-images", "--test-masks", *MASKS, *READING),
+    "Feature vectors": ("--test-table", "--label", "--raw"),
 }
 
 
@@ -115,6 +117,9 @@ SECTIONS = {
 )
 @click.option("--test-images", type=folder, help="Measure the report's accuracies on these pictures.")
 @click.option("--test-masks", type=folder, help="Find the masks of --test-images in this folder.")
+@click.option("--test-table", type=file, help="Measure the report's accuracies on this CSV or .npz file.")
+@label_option
+@raw_option
 @palette_option
 @ignore_option
 @bands_option

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from wnn2hdl.build.classifier import open_classifier
+from wnn2hdl.build.classifier import circuit_row_answers, open_classifier, open_working_build
 from wnn2hdl.build.design import MODEL_FILE
 from wnn2hdl.build.folder import require_build
 from wnn2hdl.build.reporting import read_report
@@ -47,7 +47,7 @@ from wnn2hdl.evaluation.measures import (
     mean_iou,
     wilson,
 )
-from wnn2hdl.evaluation.rows import load_vector_classifier, row_confusion
+from wnn2hdl.evaluation.rows import confusion_of, load_vector_classifier, row_answers, true_classes
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.lower.targets import TARGETS
@@ -222,19 +222,28 @@ def _figures(confusion: NDArray[np.int64], classes: tuple[str, ...]) -> dict[str
 
 
 def _with_table(model: Path, table: Path, label: str | None, raw: bool | None) -> tuple[dict[str, Any], str]:
-    classifier = load_vector_classifier(model)
+    if model.is_dir():
+        require_build(model)
+    classifier = load_vector_classifier(model / MODEL_FILE if model.is_dir() else model)
     rows = read_table(table, label)
-    confusion = row_confusion(classifier, rows, raw)
-    figures = _figures(confusion, classifier.classes)
-    figures["intervals"] = {"accuracy": wilson(confusion), "kappa": None, "mean_iou": None}
+    truth = true_classes(classifier.classes, rows)
+    answers = {"model": row_answers(classifier, rows, raw)}
+    if model.is_dir():
+        answers = {"circuit": circuit_row_answers(open_working_build(model), rows, raw), **answers}
+    found: dict[str, dict[str, Any]] = {}
+    for name, given in answers.items():
+        confusion = confusion_of(truth, given, len(classifier.classes))
+        found[name] = _figures(confusion, classifier.classes)
+        found[name]["intervals"] = {"accuracy": wilson(confusion), "kappa": None, "mean_iou": None}
     data = {
-        "accuracy": figures["accuracy"],
+        "accuracy": next(iter(found.values()))["accuracy"],
         "samples": len(rows.labels),
         "classes": list(classifier.classes),
-        "model": figures,
+        **found,
         "interval": {"method": "Wilson score", "confidence": CONFIDENCE},
     }
-    return data, _lines(f"model, {len(rows.labels)} samples", figures)
+    lines = [_lines(f"{name}, {len(rows.labels)} samples", figures) for name, figures in found.items()]
+    return data, "\n".join(lines)
 
 
 def _with_tags(

@@ -84,8 +84,14 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
         captured.get().rstrip(),
         f"proof: {proof['status']} in {proof['seconds']:.1f} s, {proof['method']}{earlier}",
     ]
-    for name in ("model", "circuit"):
-        accuracy = report["accuracy" if name == "circuit" else "model_accuracy"]
-        if accuracy is not None:
-            lines.append(f"accuracy of the {name}: {accuracy:.2%}")
+    rows = report["rows"]
+    for name, key, span in (
+        ("model", "model_accuracy", rows["model_interval"]),
+        ("circuit", "accuracy", rows["interval"]),
+    ):
+        if report[key] is not None:
+            interval = "" if span is None else f" ({span[0]:.2%} to {span[1]:.2%})"
+            lines.append(f"accuracy of the {name}: {report[key]:.2%}{interval}")
+    if rows["changed"]:
+        lines.append(f"{rows['changed']} of {rows['count']} rows are answered differently")
     return "\n".join([*lines, f"written to {folder}"])

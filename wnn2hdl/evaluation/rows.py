@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, WisardModel, Words
-from wnn2hdl.ir.models import ClassifierModel, LogicModel, load_model
+from wnn2hdl.ir.models import AnyModel, ClassifierModel, LogicModel, load_model
 
 VectorClassifier = WisardModel | ClassifierModel
 
@@ -18,12 +18,16 @@ SCALER = "scaler"
 
 def load_vector_classifier(path: Path) -> VectorClassifier:
     """The classifier of feature vectors in a model file; raises InputError for any other file."""
-    model = load_model(path)
+    return require_vector_classifier(load_model(path), path)
+
+
+def require_vector_classifier(model: AnyModel, path: Path | str) -> VectorClassifier:
+    """A model that classifies feature vectors, as it is given; raises InputError for all others."""
     if isinstance(model, LogicModel) or not isinstance(model.encoder, Thermometer | Words):
         raise InputError(
             "the model does not classify feature vectors",
             value=f"{path} (kind {model.kind})",
-            hint="measure a model of pixels on --images and --masks",
+            hint="measure a model of pixels on pictures and masks",
         )
     return model
 
@@ -60,23 +64,28 @@ def scaled(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> ND
     return np.asarray((table.features - mean) / scale)
 
 
-def row_confusion(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.int64]:
-    """Samples by true class (rows) and answer (columns): int64 ``[classes, classes]``.
-
-    Raises:
-        InputError: the table has another number of features than the model reads, features that it cannot
-            read, or a label that it has no class for; or see `scaled`.
-    """
-    encoder = model.encoder
-    assert isinstance(encoder, Thermometer | Words)
-    index = {name: position for position, name in enumerate(model.classes)}
+def true_classes(classes: tuple[str, ...], table: FeatureTable) -> NDArray[np.int64]:
+    """The index of each row's class, int64 ``[samples]``; raises InputError for a label of no class."""
+    index = {name: position for position, name in enumerate(classes)}
     foreign = sorted(set(table.labels) - index.keys())
     if foreign:
         raise InputError(
             "the model has no class for a label",
             value=foreign[0],
-            hint=f"it has {', '.join(model.classes[:20])}",
+            hint=f"it has {', '.join(classes[:20])}",
         )
+    return np.array([index[name] for name in table.labels])
+
+
+def row_answers(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.int64]:
+    """The index of the class that a model answers for each row: int64 ``[samples]``.
+
+    Raises:
+        InputError: the table has another number of features than the model reads, or features that it cannot
+            read; or see `scaled`.
+    """
+    encoder = model.encoder
+    assert isinstance(encoder, Thermometer | Words)
     if len(table.columns) != encoder.features:
         raise InputError(
             "the table has another number of features than the model reads",
@@ -86,7 +95,15 @@ def row_confusion(model: VectorClassifier, table: FeatureTable, raw: bool | None
         bits = encoder.bits(scaled(model, table, raw))
     except ValueError as error:
         raise InputError("the model cannot read the features", value=error) from error
-    truth = np.array([index[name] for name in table.labels])
-    classes = len(model.classes)
-    cells = np.bincount(truth * classes + model.evaluate(bits), minlength=classes**2)
-    return cells.reshape(classes, classes)
+    return model.evaluate(bits)
+
+
+def confusion_of(truth: NDArray[np.int64], answers: NDArray[np.int64], classes: int) -> NDArray[np.int64]:
+    """Samples by true class (rows) and answer (columns): int64 ``[classes, classes]``."""
+    return np.bincount(truth * classes + answers, minlength=classes**2).reshape(classes, classes)
+
+
+def row_confusion(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.int64]:
+    """Samples by true class and a model's answer; raises as `true_classes` and `row_answers`."""
+    truth = true_classes(model.classes, table)
+    return confusion_of(truth, row_answers(model, table, raw), len(model.classes))

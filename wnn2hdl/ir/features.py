@@ -185,6 +185,24 @@ class Thermometer:
         ]
         return np.concatenate(columns, axis=1)
 
+    def port_bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """What hardware reads: the words of all features side by side, each the least significant bit first.
+
+        Args:
+            features: numbers, ``[samples, features]``.
+
+        Returns:
+            bool ``[samples, features * input.bits]``.
+
+        Raises:
+            ValueError: features are real numbers to the thermometer.
+        """
+        if self.input is None:
+            raise ValueError("the thermometer reads real numbers, not words")
+        words = self.input.words(_matrix(features, self.features, np.float64))
+        digits = words[..., np.newaxis] >> np.arange(self.input.bits) & 1
+        return digits.astype(np.bool_).reshape(len(words), -1)
+
     def to_json(self) -> dict[str, Any]:
         """A JSON object, read back by `encoder_from_json`."""
         data = {
@@ -247,6 +265,10 @@ class Words:
             raise ValueError(f"features must be whole numbers from 0 to {(1 << self.word_bits) - 1}")
         split = words[..., np.newaxis] >> np.arange(self.word_bits) & 1
         return split.astype(np.bool_).reshape(len(words), self.width)
+
+    def port_bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """What hardware reads, which is `bits`."""
+        return self.bits(features)
 
     def to_json(self) -> dict[str, Any]:
         """A JSON object, read back by `encoder_from_json`."""

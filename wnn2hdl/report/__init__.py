@@ -12,6 +12,7 @@ from wnn2hdl.report.build_report import (
     PartFigures,
     Proof,
     PublishedFigure,
+    RowFigures,
     published_figures,
     report_dict,
 )
@@ -40,6 +41,7 @@ __all__ = [
     "Proof",
     "PublishedFigure",
     "Recorded",
+    "RowFigures",
     "build_page",
     "check_report",
     "gate_json",

@@ -136,6 +136,24 @@ class EdgeFigures:
 
 
 @dataclass(frozen=True)
+class RowFigures:
+    """How right a circuit of features is on labelled rows; None where not measured.
+
+    Attributes:
+        count: of the rows.
+        interval: Wilson's 95 % interval of the circuit's accuracy.
+        model_interval: of the accuracy of the model as it was given to `compile`, which may read real
+            numbers where the circuit reads words.
+        changed: rows on which the two answer differently.
+    """
+
+    count: int | None = None
+    interval: tuple[float, float] | None = None
+    model_interval: tuple[float, float] | None = None
+    changed: int | None = None
+
+
+@dataclass(frozen=True)
 class PublishedFigure:
     """A figure that others published and that was not measured here."""
 
@@ -172,9 +190,10 @@ class BuildReport:
         proof: how the Verilog was checked.
         care: where circuit and model are equal.
         edges: the edge filter.
-        accuracy: of the circuit, 0 to 1, on labelled pixels; None if there were none.
-        model_accuracy: of the model on the same pixels.
-        confusion: those pixels by true class (rows) and the circuit's answer (columns).
+        accuracy: of the circuit, 0 to 1, on labelled pixels or rows; None if there were none.
+        model_accuracy: of the model on the same; of a model of features, as it was given.
+        confusion: those pixels or rows by true class (rows) and the circuit's answer (columns).
+        rows: more about labelled rows.
         model: the network that was compiled.
         command: what compiles the model file of the build folder again, run beside that folder.
         evaluation: what measures its accuracies again, run there too; None if there are none.
@@ -199,6 +218,7 @@ class BuildReport:
     accuracy: float | None = None
     model_accuracy: float | None = None
     confusion: tuple[tuple[int, ...], ...] | None = None
+    rows: RowFigures = RowFigures()
     model: ModelFigures | None = None
     command: str | None = None
     evaluation: str | None = None

@@ -89,11 +89,21 @@ def _answers(report: Mapping[str, Any]) -> str:
     edges = report["edges"]
     answers: list[tuple[str, str | None]] = []
     target = TARGETS.get(report["target"])
+    answers += [
+        ("accuracy of the circuit", form(report["accuracy"], "percent")),
+        ("accuracy of the model", form(report["model_accuracy"], "percent")),
+    ]
+    rows = report.get("rows") or {}
+    if rows.get("interval") is not None:
+        answers += [
+            (f"{what}'s 95 % interval, Wilson's", " to ".join(form(x, "percent") for x in rows[key]))
+            for what, key in (("the circuit", "interval"), ("the model", "model_interval"))
+        ]
+        changed = f"{form(rows['changed'])} of {form(rows['count'])}"
+        answers.append(("rows on which circuit and model as given differ", changed))
     if target is None or target.classifies:
         care = report["care"]
         answers += [
-            ("accuracy of the circuit", form(report["accuracy"], "percent")),
-            ("accuracy of the model", form(report["model_accuracy"], "percent")),
             ("pixel codes cared for", form(care["codes"])),
             ("share of other imagery that these codes cover", form(care["coverage"], "percent")),
         ]

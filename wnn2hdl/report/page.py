@@ -129,10 +129,10 @@ def build_page(
         report=report,
         what=target.description if target else f"A circuit of target {report['target']}",
         form=form,
-        classifies=target is None or target.classifies,
+        classifies=target is None or target.classifies or report["accuracy"] is not None,
         # Not of an edge filter or a matcher, which are the same for every model.
         model=model if target is None or target.classifies or "network" in report["parts"] else None,
-        answers=target is None or target.classifies or target.has_edges,
+        answers=target is None or target.classifies or target.has_edges or report["accuracy"] is not None,
         window=_window(window) if window else (),
         places={
             name: f"row {tap.row}, column {tap.column}"

@@ -184,3 +184,28 @@ def test_a_table_of_feature_vectors_has_wilsons_interval(
 )
 def test_tables_that_do_not_fit(run: Run, model: Path, words: tuple[str, ...], complaint: str) -> None:
     assert complaint in run("evaluate", model, *words).complaint()
+
+
+@pytest.mark.slow
+def test_a_build_of_a_network_is_measured_as_circuit_and_as_model(
+    evaluate: Run, run: Run, table: tuple[Path, Path], tmp_path: Path
+) -> None:
+    model, rows = table
+    words = ("--table", rows, "--label", "class")
+    done = run(
+        "compile", model, "--input", "UQ2.0", "--test-table", rows, "--label", "class", "-o", tmp_path / "b"
+    )
+    # Half is rounded down to 0, which is no other side of the threshold.
+    assert "accuracy of the circuit: 75.00% (30.06% to 95.44%)" in done.stdout
+    assert "answered differently" not in done.stdout
+    data = evaluate(tmp_path / "b", *words)
+    assert data["circuit"]["confusion"] == data["model"]["confusion"] == [[2, 1], [0, 1]]
+    assert data["accuracy"] == 0.75
+
+
+def test_a_folder_that_is_no_build_is_not_measured(
+    run: Run, table: tuple[Path, Path], tmp_path: Path
+) -> None:
+    assert (
+        "not a build folder" in run("evaluate", tmp_path, "--table", table[1], "--label", "class").complaint()
+    )

@@ -146,3 +146,14 @@ def test_vectors_of_another_length_are_refused(encoder: Thermometer) -> None:
 def test_json_gives_the_encoder_back(encoder: Any) -> None:
     again: Encoder = encoder_from_json(json.loads(json.dumps(encoder.to_json())))
     assert again == encoder
+
+
+def test_a_port_takes_the_words_side_by_side() -> None:
+    encoder = Thermometer(((0.5,), (1.0,)), input=FixedPoint(3, 1))
+    assert encoder.port_bits([[0.5, -1.0], [9.0, 0.4]]).astype(int).tolist() == [
+        [1, 0, 0, 0, 1, 1],
+        [1, 1, 0, 0, 0, 0],
+    ]
+    assert Words(2, 2).port_bits([[1, 2]]).astype(int).tolist() == [[1, 0, 0, 1]]
+    with pytest.raises(ValueError, match="reads real numbers, not words"):
+        Thermometer(((0.5,),)).port_bits([[1.0]])
