@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from wnn2hdl.edges import canny, filter_agreement, grey, learned, learned_under_budget
 from wnn2hdl.edges.compare import Agreement
@@ -115,6 +114,9 @@ def _edge_pairs(
     for picture in imagery.pictures(progress):
         pixels = picture.pixels
         if picture.left_out:
+            # Not at the top: whole pictures, and commands that read none, need not wait for it.
+            from scipy.ndimage import distance_transform_edt
+
             nearest = distance_transform_edt(~picture.valid, return_distances=False, return_indices=True)
             pixels = pixels[tuple(nearest)]
         yield classifier.classify(pixels) != 0, canny(grey(pixels))

@@ -179,9 +179,10 @@ def _write_graphs(circuits: Sequence[Circuit], folder: Path, timeout: float) -> 
     script = _read_cells(circuits)
     for number, circuit in enumerate(circuits):
         script += _read(circuit, number, folder)
-        # Mapping each module once, before it is flattened into its nine instances, is what makes this quick.
+        # Mapping each module once, and merging its equal gates, before it is flattened into its nine
+        # instances is what makes this quick: flattening takes the longest, a time for each gate.
         script += ["check -assert", "setundef -anyseq", "opt_expr", "techmap", "opt_expr", "aigmap"]
-        script += ["opt_clean", "rename -hide", "flatten -noscopeinfo"]
+        script += ["opt_merge", "opt_clean", "rename -hide", "flatten -noscopeinfo"]
         script += _ONE_CLOCK if circuit.latency else []
         script += [f"write_aiger -map {number}.map {number}.aig"]
     find_yosys().run("\n".join(script) + "\n", timeout=timeout, cwd=folder)
