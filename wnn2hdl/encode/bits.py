@@ -2,7 +2,7 @@
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import CHANNELS, PIXEL_BIT_NAMES, BitSelect
-from wnn2hdl.ir.encoder import CHANNEL_BITS
+from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
 
 
 def parse_bits(text: str) -> BitSelect:

@@ -2,17 +2,7 @@
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits, spread_codes
 from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
-from wnn2hdl.ir.encoder import (
-    CHANNELS,
-    COLOURS,
-    PIXEL_BIT_NAMES,
-    PIXEL_BITS,
-    BitSelect,
-    Encoder,
-    Neighbourhood,
-    PictureEncoder,
-    Tap,
-)
+from wnn2hdl.ir.encoder import Encoder, Neighbourhood, PictureEncoder, Tap
 from wnn2hdl.ir.equation import Equation, equation
 from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
 from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
@@ -27,6 +17,8 @@ from wnn2hdl.ir.network import (
     Style,
     look_up,
 )
+from wnn2hdl.ir.pixel_bits import CHANNELS, COLOURS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect
+from wnn2hdl.ir.relational import Comparison, PixelEncoder, Relational
 from wnn2hdl.ir.tables import TruthTable, pack_contents, unpack_contents
 from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
 
@@ -44,6 +36,7 @@ __all__ = [
     "WINDOW_CODES",
     "BitSelect",
     "Column",
+    "Comparison",
     "Cover",
     "Cube",
     "EdgeFilter",
@@ -56,6 +49,8 @@ __all__ = [
     "Mux",
     "Neighbourhood",
     "PictureEncoder",
+    "PixelEncoder",
+    "Relational",
     "Style",
     "Tap",
     "Term",

@@ -9,90 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
 from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
+from wnn2hdl.ir.pixel_bits import BitSelect
+from wnn2hdl.ir.relational import PixelEncoder, Relational
 from wnn2hdl.ir.tables import pack_contents, unpack_contents
-
-CHANNELS = ("R", "G", "B")
-"""Channels of a pixel, in the order of an image's last axis."""
-
-CHANNEL_BITS = 8
-"""Bits of a channel; bit 7 is the most significant."""
-
-PIXEL_BITS = len(CHANNELS) * CHANNEL_BITS
-"""Bits of a pixel in hardware: red in bits 23…16, green in 15…8, blue in 7…0."""
-
-
-@dataclass(frozen=True)
-class BitSelect:
-    """Chosen bits of the colour channels: pure wiring, no logic.
-
-    Attributes:
-        bits: names such as ``R7``: a channel of `CHANNELS`, then a bit number, 7 the most significant. The
-            first named is code bit 0.
-    """
-
-    kind: ClassVar[str] = "bits"
-    bits: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        for name in self.bits:
-            if name not in PIXEL_BIT_NAMES:
-                raise ValueError(
-                    f"{name!r} is not a pixel bit; use R, G or B and a number from 0 to 7, as in R7"
-                )
-        if not self.bits:
-            raise ValueError("no bits were chosen; name at least one, as in R7")
-        if len(set(self.bits)) != len(self.bits):
-            raise ValueError(f"a bit is named twice in {','.join(self.bits)}")
-
-    @property
-    def width(self) -> int:
-        """Bits of a code."""
-        return len(self.bits)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Name of each code bit."""
-        return self.bits
-
-    @property
-    def halo(self) -> int:
-        """A pixel's code depends on no other pixel."""
-        return 0
-
-    @property
-    def pixel_positions(self) -> tuple[int, ...]:
-        """For each code bit, its position in the 24-bit pixel word (see `PIXEL_BITS`)."""
-        return tuple(PIXEL_BIT_NAMES[name] for name in self.bits)
-
-    @cached_property
-    def _shares(self) -> NDArray[np.uint32]:
-        """What each level of each channel adds to a code: uint32 ``[channels, 256]``."""
-        levels = np.arange(1 << CHANNEL_BITS, dtype=np.uint32)
-        shares = np.zeros((len(CHANNELS), len(levels)), dtype=np.uint32)
-        for position, name in enumerate(self.bits):
-            shares[CHANNELS.index(name[0])] |= (levels >> int(name[1]) & 1) << position
-        return shares
-
-    def codes(self, pixels: ArrayLike) -> NDArray[np.uint32]:
-        """Codes of pixels.
-
-        Args:
-            pixels: uint8 ``S + (3,)``, channels in the order of `CHANNELS`.
-
-        Returns:
-            uint32 ``S``; bit ``i`` is ``bits[i]``.
-        """
-        array = np.asarray(pixels, dtype=np.uint8)
-        # Every code bit comes from one channel, so a code is the OR of three look-ups.
-        red, green, blue = self._shares
-        codes = np.take(red, array[..., 0])
-        codes |= np.take(green, array[..., 1])
-        codes |= np.take(blue, array[..., 2])
-        return codes
-
-    def to_json(self) -> dict[str, Any]:
-        """A JSON object, read back by `encoder_from_json`."""
-        return {"kind": self.kind, "bits": list(self.bits)}
 
 
 @dataclass(frozen=True)
@@ -199,7 +118,7 @@ class Neighbourhood:
         return {"kind": self.kind, "size": self.size, "taps": taps}
 
 
-PictureEncoder = BitSelect | Neighbourhood
+PictureEncoder = PixelEncoder | Neighbourhood
 """What makes codes of pictures; its ``halo`` is how many pixels at a picture's rim have none."""
 
 Encoder = PictureEncoder | FeatureEncoder
@@ -213,6 +132,8 @@ def encoder_from_json(data: dict[str, Any]) -> Encoder:
     """
     if data["kind"] == BitSelect.kind:
         return BitSelect(tuple(data["bits"]))
+    if data["kind"] == Relational.kind:
+        return Relational(tuple(data["bits"]))
     if data["kind"] == Neighbourhood.kind:
         taps = (
             Tap(tap["row"], tap["column"], BitSelect(tuple(tap["bits"])), int(tap["contents"], 16))
@@ -224,14 +145,3 @@ def encoder_from_json(data: dict[str, Any]) -> Encoder:
     thresholds = tuple(tuple(float(x) for x in levels) for levels in data["thresholds"])
     words = FixedPoint.from_json(data["input"]) if "input" in data else None
     return Thermometer(thresholds, data["strict"], words)
-
-
-PIXEL_BIT_NAMES = {
-    f"{channel}{bit}": (len(CHANNELS) - 1 - position) * CHANNEL_BITS + bit
-    for position, channel in enumerate(CHANNELS)
-    for bit in range(CHANNEL_BITS)
-}
-"""Position in the 24-bit pixel word of every bit of a pixel, by name."""
-
-COLOURS = BitSelect(tuple(f"{channel}{bit}" for channel in CHANNELS for bit in (7, 6, 5, 4)))
-"""Colours as coarse as the reference design sees them: 4096, by which a model remembers what it was shown."""

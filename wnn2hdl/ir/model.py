@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import write_json
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits
-from wnn2hdl.ir.encoder import BitSelect, Encoder, PictureEncoder, encoder_from_json
+from wnn2hdl.ir.encoder import Encoder, PictureEncoder, encoder_from_json
 from wnn2hdl.ir.modelfile import answers_digest, contradicting, header, read_model_file
+from wnn2hdl.ir.relational import PixelEncoder
 
 MAX_COUNTS = 1 << 27
 """The most counts of a model, all discriminators together: 1 GiB."""
@@ -194,14 +195,14 @@ def check_size(classes: int, rams: int, address_bits: int) -> None:
         )
 
 
-def pixel_encoder(model: WisardModel) -> BitSelect:
+def pixel_encoder(model: WisardModel) -> PixelEncoder:
     """The encoder of a model of single pixels.
 
     Raises:
         InputError: as `picture_encoder`, or the model looks at a pixel's neighbours.
     """
     encoder = picture_encoder(model)
-    if not isinstance(encoder, BitSelect):
+    if not isinstance(encoder, PixelEncoder):
         raise InputError(
             "the model looks at more than one pixel",
             value=f"at {encoder.size}x{encoder.size}",

@@ -9,8 +9,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wnn2hdl.ir.encoder import CHANNELS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect
+from wnn2hdl.ir.pixel_bits import CHANNELS, PIXEL_BIT_NAMES, PIXEL_BITS
+from wnn2hdl.ir.relational import PixelEncoder, Relational, examples
 from wnn2hdl.ir.wires import Bits
+
+_DRAWS = 16
+"""How often a pixel of a code is drawn before a known one is taken."""
 
 
 def pixel_bits(pixels: ArrayLike) -> Bits:
@@ -34,21 +38,40 @@ def bits_to_pixels(bits: Bits) -> NDArray[np.uint8]:
 
 
 def pixels_of_codes(
-    encoder: BitSelect, codes: NDArray[np.int64], rng: np.random.Generator | None = None
+    encoder: PixelEncoder, codes: NDArray[np.int64], rng: np.random.Generator | None = None
 ) -> NDArray[np.uint8]:
     """Pixels of these codes, uint8 ``S + (3,)`` for codes of shape ``S``.
 
     Args:
         encoder: the bits that a code is made of.
-        codes: the codes.
-        rng: draws the bits that the encoder does not read; they are 0 if left out.
+        codes: codes that occur, see `occurring`.
+        rng: draws what the codes leave open; if left out, bits that the encoder does not read are 0, and for
+            comparisons it is always the same pixel.
     """
     shape = (*codes.shape, len(CHANNELS))
     pixels = np.zeros(shape, np.uint8) if rng is None else rng.integers(0, 256, size=shape, dtype=np.uint8)
+    if isinstance(encoder, Relational):
+        return _drawn(encoder, codes, pixels, rng)
     for position, name in enumerate(encoder.bits):
         channel, bit = CHANNELS.index(name[0]), int(name[1])
         pixels[..., channel] &= np.uint8(0xFF ^ 1 << bit)
         pixels[..., channel] |= ((codes >> position & 1) << bit).astype(np.uint8)
+    return pixels
+
+
+def _drawn(
+    encoder: Relational,
+    codes: NDArray[np.int64],
+    pixels: NDArray[np.uint8],
+    rng: np.random.Generator | None,
+) -> NDArray[np.uint8]:
+    """Pixels drawn again and again, and in the end replaced, until they have these codes."""
+    for _ in range(_DRAWS) if rng is not None else ():
+        wrong = encoder.codes(pixels) != codes
+        pixels[wrong] = rng.integers(0, 256, size=(int(wrong.sum()), len(CHANNELS)), dtype=np.uint8)
+    found = examples(encoder)
+    for place in np.argwhere(encoder.codes(pixels) != codes):
+        pixels[tuple(place)] = found[int(codes[tuple(place)])]
     return pixels
 
 

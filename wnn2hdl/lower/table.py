@@ -13,6 +13,7 @@ from wnn2hdl.ir import (
     all_codes,
     codes_to_bits,
 )
+from wnn2hdl.ir.relational import signal_name
 
 
 def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> TruthTable:
@@ -23,7 +24,7 @@ def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> Tr
         care: bool ``[2**width]``, the codes that matter; all of them if left out.
 
     Returns:
-        A table with the inputs ``model.encoder.names`` and the outputs ``class_bit0`` …, the index of the
+        A table with the inputs ``model.encoder.names``, as identifiers, and the outputs ``class_bit0`` …, the index of the
         winning class in binary, least significant bit first; two classes have one output.
 
     Raises:
@@ -32,7 +33,8 @@ def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> Tr
     outputs = (len(model.classes) - 1).bit_length()
     names = tuple(f"class_bit{position}" for position in range(outputs))
     values = codes_to_bits(model.evaluate_all_codes(), outputs)
-    table = TruthTable.exact(model.encoder.names, names, values)
+    inputs = tuple(map(signal_name, model.encoder.names))
+    table = TruthTable.exact(inputs, names, values)
     return table if care is None else table.with_care(care)
 
 

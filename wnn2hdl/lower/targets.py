@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
     WINDOW_BITS,
-    BitSelect,
     EdgeFilter,
     Neighbourhood,
+    PixelEncoder,
     Thermometer,
     WisardModel,
     Words,
@@ -94,7 +94,7 @@ def _wisard(of: Ingredients) -> WisardModel:
 
 
 def _reads_pixels(model: AnyModel) -> bool:
-    return isinstance(model, WisardModel) and isinstance(model.encoder, BitSelect)
+    return isinstance(model, WisardModel) and isinstance(model.encoder, PixelEncoder)
 
 
 def _reads_neighbours(model: AnyModel) -> bool:

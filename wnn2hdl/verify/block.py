@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.ir import (
+    PIXEL_BIT_NAMES,
     PIXEL_BITS,
     WINDOW_BITS,
     BitSelect,
     EdgeFilter,
+    PixelEncoder,
     WisardModel,
     bits_to_codes,
     codes_to_bits,
@@ -22,6 +24,7 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits, pixels_of_codes
+from wnn2hdl.ir.relational import occurring
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
 from wnn2hdl.verify.reference import class_bits, lookup, module, plain_sum, winner
@@ -44,7 +47,7 @@ class Block:
     """
 
     model: WisardModel
-    encoder: BitSelect
+    encoder: PixelEncoder
     edges: EdgeFilter | None
     pixel_care: NDArray[np.bool_]
     window_care: NDArray[np.bool_]
@@ -93,8 +96,8 @@ class Block:
         return held
 
     def cared_pixel(self) -> NDArray[np.uint8]:
-        """The pixel of the lowest code in the care set whose other bits are 0: uint8 ``[3]``."""
-        code = np.flatnonzero(self.pixel_care)[:1]
+        """A pixel of the lowest code in the care set that occurs: uint8 ``[3]``."""
+        code = np.flatnonzero(self.pixel_care & occurring(self.encoder))[:1]
         return np.asarray(pixels_of_codes(self.encoder, code)[0])
 
     def _classes(self, pixels: Bits) -> NDArray[np.int64]:
@@ -211,8 +214,9 @@ def _care(block: Block) -> str:
     So its output runs over all cared-for pixels and no others. ``care_window`` says whether a binary window
     is cared for.
     """
-    free = [f"free[{position}]" for position in block.encoder.pixel_positions]
-    pixel_lines, pixel_cared = lookup("n", block.pixel_care, free)
+    code_lines, code = _code(block.encoder, "free")
+    pixel_lines, pixel_cared = lookup("n", block.pixel_care, code)
+    pixel_lines[:0] = code_lines
     red, green, blue = block.cared_pixel()
     pixel_lines.append(f"  assign rgb = {pixel_cared} ? free : {{8'd{red}, 8'd{green}, 8'd{blue}}};")
     window_lines, window_cared = lookup("n", block.window_care, [f"bits[{i}]" for i in range(WINDOW_BITS)])
@@ -222,10 +226,34 @@ def _care(block: Block) -> str:
     )
 
 
+def _code(encoder: PixelEncoder, pixel: str) -> tuple[list[str], list[str]]:
+    """Lines, and for each code bit its expression, where ``pixel`` is a net of 24 bits.
+
+    Comparisons are of plain numbers of 32 bits, which their weights and offsets cannot exceed.
+    """
+    lines: list[str] = []
+    code: list[str] = []
+    for position, name in enumerate(encoder.names):
+        if isinstance(encoder, BitSelect) or position not in encoder.comparisons:
+            code.append(f"{pixel}[{PIXEL_BIT_NAMES[name]}]")
+            continue
+        comparison = encoder.comparisons[position]
+        sides = []
+        for terms, offset in (comparison.left, -comparison.offset), (comparison.right, comparison.offset):
+            channels = [
+                f"32'd{term.weight} * {pixel}[{PIXEL_BIT_NAMES[f'{term.channel}7']}:"
+                f"{PIXEL_BIT_NAMES[f'{term.channel}{term.low}']}]"
+                for term in terms
+            ]
+            sides.append(" + ".join([*channels, f"32'd{max(offset, 0)}"]))
+        lines.append(f"  wire compared_{position} = ({sides[0]}) >= ({sides[1]});")
+        code.append(f"compared_{position}")
+    return lines, code
+
+
 def _pixel(block: Block) -> str:
-    encoder = block.encoder
-    code_bits = ", ".join(f"rgb[{position}]" for position in reversed(encoder.pixel_positions))
-    lines = [f"  wire [{encoder.width - 1}:0] code = {{{code_bits}}};", *winner(block.model)]
+    lines, code = _code(block.encoder, "rgb")
+    lines += [f"  wire [{len(code) - 1}:0] code = {{{', '.join(reversed(code))}}};", *winner(block.model)]
     claim = _pixel_claim(block)
     return module(claim.module, claim.inputs, claim.outputs, lines)
 

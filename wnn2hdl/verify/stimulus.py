@@ -12,23 +12,30 @@ from wnn2hdl.ir import (
     WINDOW_CODES,
     BitSelect,
     Neighbourhood,
+    PixelEncoder,
     Tap,
     WisardModel,
     bits_to_codes,
     codes_to_bits,
 )
 from wnn2hdl.ir.pixels import pixel_bits, pixels_of_codes
+from wnn2hdl.ir.relational import Relational, occurring
 from wnn2hdl.ir.wires import Bits
 
 BLOCK_WINDOWS = 10_240
 """Windows that a block or a neighbourhood is simulated on: every cared-for code of it several times."""
 
+COMPARED_PIXELS = 4096
+"""Pixels that a classifier which compares channels is simulated on, at least."""
+
 _SEED = 0
 
 
-def pixel(encoder: BitSelect, care: NDArray[np.bool_]) -> dict[str, Bits]:
-    """A pixel of every cared-for code."""
-    codes = np.flatnonzero(care)
+def pixel(encoder: PixelEncoder, care: NDArray[np.bool_]) -> dict[str, Bits]:
+    """A pixel of every cared-for code; several where comparisons make codes that are few."""
+    codes = np.flatnonzero(care & occurring(encoder))
+    if isinstance(encoder, Relational):
+        codes = np.resize(codes, max(len(codes), COMPARED_PIXELS))
     return {"rgb": pixel_bits(pixels_of_codes(encoder, codes, np.random.default_rng(_SEED)))}
 
 
@@ -47,7 +54,7 @@ def match() -> dict[str, Bits]:
 
 
 def block(
-    model: WisardModel, encoder: BitSelect, pixel_care: NDArray[np.bool_], window_care: NDArray[np.bool_]
+    model: WisardModel, encoder: PixelEncoder, pixel_care: NDArray[np.bool_], window_care: NDArray[np.bool_]
 ) -> dict[str, Bits]:
     """`BLOCK_WINDOWS` windows: each cared-for binary window in turn, made of random pixels of its classes.
 
@@ -58,7 +65,7 @@ def block(
         window_care: bool ``[512]``.
     """
     rng = np.random.default_rng(_SEED)
-    codes = np.flatnonzero(pixel_care)
+    codes = np.flatnonzero(pixel_care & occurring(encoder))
     foreground = model.evaluate(codes_to_bits(codes, encoder.width)) != 0
     pools = {True: codes[foreground], False: codes[~foreground]}
     if not all(map(len, pools.values())):
