@@ -66,9 +66,10 @@ def _drawn(
     rng: np.random.Generator | None,
 ) -> NDArray[np.uint8]:
     """Pixels drawn again and again, and in the end replaced, until they have these codes."""
-    for _ in range(_DRAWS) if rng is not None else ():
-        wrong = encoder.codes(pixels) != codes
-        pixels[wrong] = rng.integers(0, 256, size=(int(wrong.sum()), len(CHANNELS)), dtype=np.uint8)
+    if rng is not None:
+        for _ in range(_DRAWS):
+            wrong = encoder.codes(pixels) != codes
+            pixels[wrong] = rng.integers(0, 256, size=(int(wrong.sum()), len(CHANNELS)), dtype=np.uint8)
     found = examples(encoder)
     for place in np.argwhere(encoder.codes(pixels) != codes):
         pixels[tuple(place)] = found[int(codes[tuple(place)])]

@@ -24,8 +24,8 @@ def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> Tr
         care: bool ``[2**width]``, the codes that matter; all of them if left out.
 
     Returns:
-        A table with the inputs ``model.encoder.names``, as identifiers, and the outputs ``class_bit0`` …, the index of the
-        winning class in binary, least significant bit first; two classes have one output.
+        A table with the inputs ``model.encoder.names``, as identifiers, and the outputs ``class_bit0`` …, the
+        index of the winning class in binary, least significant bit first; two classes have one output.
 
     Raises:
         InputError: the model reads more bits than a table may have.

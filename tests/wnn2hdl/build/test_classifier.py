@@ -11,7 +11,7 @@ from wnn2hdl.build.classifier import circuit_answers, circuit_classifier, open_c
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.evaluation.classifiers import model_classifier
-from wnn2hdl.ir import LutNetwork, WisardModel, pixel_encoder
+from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, pixel_encoder
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.ir.wires import Port, Slice
@@ -41,7 +41,9 @@ def test_an_answer_that_is_no_class_is_taken_for_the_last_one(build: Path) -> No
     design, _, _ = open_build(build)
     inputs = design.networks["pixel"].inputs
     nought_or_three = LutNetwork(inputs, (), (("class_bit0", inputs[0]), ("class_bit1", inputs[0])))
-    code = tuple(Slice("rgb", position) for position in pixel_encoder(design.picture_model).pixel_positions)
+    encoder = pixel_encoder(design.picture_model)
+    assert isinstance(encoder, BitSelect)
+    code = tuple(Slice("rgb", position) for position in encoder.pixel_positions)
     pixel = design.parts["pixel"]
     wrong = replace(
         pixel,

@@ -172,6 +172,8 @@ def broken(**changes: object) -> dict[str, Any]:
         (broken(extra=1), "the model file is damaged: .*at the top level"),
         (broken(classes=["a"]), "the model file is damaged: .*at classes"),
         (broken(encoder={"kind": "bits", "bits": ["X9"]}), "the model file is damaged: .*at encoder"),
+        (broken(encoder={"kind": "relational", "bits": ["R>B"]}), "the model file is damaged: .*at encoder"),
+        (broken(encoder={"kind": "relational", "bits": ["R>=R"]}), "contradicts itself: .*channel once"),
         (broken(colours=[4096]), "the model file is damaged: .*at colours"),
         (broken(colours=[1, 1]), "the model file is damaged: .*at colours"),
         (broken(counts=[[], []]), "the model file is damaged: .*at counts/"),

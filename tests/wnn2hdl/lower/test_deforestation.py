@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, EdgeFilter, Neighbourhood, Tap, Thermometer, WisardModel, codes_to_bits
+from wnn2hdl.ir import (
+    BitSelect,
+    EdgeFilter,
+    Neighbourhood,
+    PictureEncoder,
+    Relational,
+    Tap,
+    Thermometer,
+    WisardModel,
+    codes_to_bits,
+)
 from wnn2hdl.ir.care import Codes, Everything
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Table
@@ -17,7 +27,7 @@ WINDOWS = codes_to_bits(np.arange(512), 9)
 CENTRE_WITHOUT_TOP = EdgeFilter("test", WINDOWS[:, 4] & ~WINDOWS[:, 1])
 
 
-def random_model(encoder: BitSelect | Neighbourhood, classes: int = 2) -> WisardModel:
+def random_model(encoder: PictureEncoder, classes: int = 2) -> WisardModel:
     rng = np.random.default_rng(classes)
     mapping = np.stack([rng.permutation(encoder.width)[:3] for _ in range(4)])[np.newaxis]
     counts = rng.integers(0, 3, (classes, 4, 8))
@@ -54,6 +64,23 @@ def test_what_is_not_cared_for_is_free_in_the_table_and_known_to_the_circuit() -
     assert table.function.care.tolist() == allowed.tolist()  # type: ignore[union-attr]
     (care,) = circuit.care
     assert [part.low for part in care.word] == [23, 22, 15, 0]
+
+
+RELATIONAL = Relational(("3R[7:2]>=2B[7:2]", "R7", "3R[7:2]>=2B[7:2]+9"))
+
+
+def test_comparisons_are_tables_before_the_one_that_decides() -> None:
+    model = random_model(RELATIONAL)
+    circuit = pixel(model)
+    decision, *rest = reversed(circuit.tables().values())
+    assert [table.name for table in rest] == ["is_3R_7_2_ge_2B_7_2_plus_9", "is_3R_7_2_ge_2B_7_2"]
+    pixels = np.random.default_rng(0).integers(0, 256, (500, 3), dtype=np.uint8)
+    expected = codes_to_bits(classes_of(model, RELATIONAL.codes(pixels)), 1)
+    assert np.array_equal(circuit.evaluate({"rgb": pixel_bits(pixels)})["class_bits"], expected)
+    # The second comparison implies the first.
+    assert decision.function.care.tolist() == [  # type: ignore[union-attr]
+        bool(code & 1) or not code & 4 for code in range(8)
+    ]
 
 
 def test_a_model_of_features_is_no_pixel_classifier() -> None:

@@ -138,6 +138,7 @@ def sum_of_products(name: str, bits: list[str], codes: list[int]) -> str:
 
 
 def _pixel(of: Block, free: bool) -> str:
+    assert isinstance(of.encoder, BitSelect)
     bits = [f"rgb[{place}]" for place in of.encoder.pixel_positions]
     classes = of.model.evaluate_all_codes()
     body = ""

@@ -4,9 +4,13 @@ from types import ModuleType
 
 import numpy as np
 
-from wnn2hdl.ir import bits_to_codes, codes_to_bits
+from wnn2hdl.ir import Relational, WisardModel, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.care import Codes
 from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits
 from wnn2hdl.ir.wires import Bits
+from wnn2hdl.verify.equivalence import Circuit
+from wnn2hdl.verify.proof import prove
+from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.specify import specify
 
 
@@ -28,6 +32,62 @@ def test_the_block_is_pixels_then_edge_filter_and_match_count(circuits: ModuleTy
         assert bits[sample] == sum(1 << i for i in range(9) if classes[sample, i])
         assert outputs["edge_bit"][sample, 0] == block.edges.patterns[bits[sample]]
         assert counts[sample] == 9 - (int(bits[sample]) ^ sample).bit_count()
+
+
+RELATIONAL = Relational(("3R>=2B[7:1]-7", "G7", "R+9B[7:3]>=140"))
+ANSWERS = np.array([0, 1, 1, 0, 0, 0, 1, 1])
+
+BY_HAND = """
+module pixel(input [23:0] rgb, output class_bits);
+  wire signed [12:0] red = {5'd0, rgb[23:16]}, blue = {6'd0, rgb[7:1]}, high = {8'd0, rgb[7:3]};
+  wire ratio = red + red + red - blue - blue + 13'sd7 >= 13'sd0;
+  wire bright = red + high * 13'sd9 > 13'sd139;
+  assign class_bits = bright ? rgb[15] : ratio ^ rgb[15];
+endmodule
+"""
+
+
+def compared(care: list[int]) -> Specification:
+    """A table over comparisons that is cared for on these of its codes."""
+    model = WisardModel(
+        RELATIONAL,
+        ("a", "b"),
+        np.arange(3).reshape(1, 1, 3),
+        np.stack([ANSWERS == 0, ANSWERS == 1])[:, np.newaxis].astype(np.int64),
+        1,
+    )
+    return specify(model, None, {"pixel": Codes(np.isin(np.arange(8), care))})
+
+
+def test_a_circuit_that_compares_as_the_model_does_is_proved_and_no_other() -> None:
+    everywhere = compared(list(range(8)))
+    assert prove(everywhere, {"pixel": Circuit((BY_HAND,), "pixel")})["pixel"].status == "proved"
+    for change in ("13'sd7 >", "13'sd6 >"), ("13'sd139", "13'sd140"), ("rgb[7:1]}", "rgb[7:2]}"):
+        wrong = Circuit((BY_HAND.replace(*change),), "pixel")
+        found = prove(everywhere, {"pixel": wrong})["pixel"].counterexample
+        assert found is not None
+        assert found.actual != found.expected
+
+
+def test_a_circuit_that_compares_is_free_outside_of_its_care_set() -> None:
+    # What is not bright is answered by the ratio alone: code 2 is G7 without the ratio.
+    free = BY_HAND.replace("ratio ^ rgb[15]", "ratio & ~rgb[15]")
+    circuit = {"pixel": Circuit((free,), "pixel")}
+    assert prove(compared([0, 1, 3, 4, 5, 6, 7]), circuit)["pixel"].status == "proved"
+    assert prove(compared(list(range(8))), circuit)["pixel"].status == "refuted"
+
+
+def test_stimulus_of_comparisons_has_every_code_that_occurs_and_is_cared_for() -> None:
+    claim = compared([0, 1, 2, 6]).claims["pixel"]
+    assert claim.stimulus is not None
+    inputs = claim.stimulus()
+    codes = RELATIONAL.codes(bits_to_pixels(inputs["rgb"]))[:, 0]
+    assert set(codes.tolist()) == {0, 1, 2, 6}
+    assert len(np.unique(inputs["rgb"], axis=0)) > 1000
+    assert claim.cared(inputs).all()
+    outside = {"rgb": pixel_bits(np.array([[200, 200, 200]], dtype=np.uint8))}
+    assert not claim.cared(outside).any()
+    assert claim.cared(claim.hold(outside)).all()
 
 
 def test_answers_have_the_ports_of_the_claim(circuits: ModuleType) -> None:
