@@ -29,6 +29,7 @@ COMMANDS: Mapping[str, Entry] = {
     "evaluate": Entry("evaluate", "Measure how accurate a model or a build is."),
     "import": Entry("import_", "Turn another tool's trained model into a model file."),
     "locate": Entry("locate", "Locate the frames of a flight on a map."),
+    "narrow": Entry("narrow", "Narrow the words that a model of features reads."),
     "report": Entry("report", "Show builds on pages, compare them, and gate a merge."),
     "samples": Entry("samples", "Write sample landscapes or a sample flight to files."),
     "scan": Entry("scan", "Map deforestation in pictures and GeoTIFFs."),

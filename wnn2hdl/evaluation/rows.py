@@ -78,21 +78,25 @@ def true_classes(classes: tuple[str, ...], table: FeatureTable) -> NDArray[np.in
 
 
 def row_answers(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.int64]:
-    """The index of the class that a model answers for each row: int64 ``[samples]``.
+    """The index of the class that a model answers for each row; raises as `feature_answers` and `scaled`."""
+    return feature_answers(model, scaled(model, table, raw))
+
+
+def feature_answers(model: VectorClassifier, features: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The index of the class that a model answers for features ``[samples, features]``: int64 ``[samples]``.
 
     Raises:
-        InputError: the table has another number of features than the model reads, or features that it cannot
-            read; or see `scaled`.
+        InputError: there are more or fewer features than the model reads, or they are none that it can read.
     """
     encoder = model.encoder
     assert isinstance(encoder, Thermometer | Words)
-    if len(table.columns) != encoder.features:
+    if features.shape[1] != encoder.features:
         raise InputError(
             "the table has another number of features than the model reads",
-            value=f"{len(table.columns)}, not {encoder.features}",
+            value=f"{features.shape[1]}, not {encoder.features}",
         )
     try:
-        bits = encoder.bits(scaled(model, table, raw))
+        bits = encoder.bits(features)
     except ValueError as error:
         raise InputError("the model cannot read the features", value=error) from error
     return model.evaluate(bits)
