@@ -8,6 +8,14 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from wnn2hdl.cli.luts import OPTIONS as LUT_NETWORK
+from wnn2hdl.cli.luts import (
+    distort_option,
+    epochs_option,
+    luts_sentence,
+    max_luts_option,
+    train_luts_on_table,
+)
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     BleachingType,
@@ -26,6 +34,7 @@ from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
 from wnn2hdl.cli.vectors import (
     TRAINING,
+    WISARD,
     cross_validate_option,
     label_option,
     levels_option,
@@ -90,11 +99,13 @@ class Discriminators:
 IMAGES = ("--images", "--masks", *MASKS, *READING, "--regions", "--chips")
 OTHERS = ("--luts-per-pixel", "--neighbourhood", "--pareto", "--trials")
 
+DISCRIMINATORS = ("--bits", "--address-bits", "--rams", "--bleach", "--balance")
+
 SECTIONS = {
     "Images and labels": IMAGES,
     "Feature vectors": TRAINING,
-    "Discriminators": ("--bits", "--address-bits", "--rams", "--bleach", "--balance"),
-    "Other classifiers": OTHERS,
+    "Discriminators": DISCRIMINATORS,
+    "Other classifiers": (*LUT_NETWORK, *OTHERS),
 }
 
 
@@ -112,6 +123,9 @@ SECTIONS = {
 @words_option
 @mapping_option
 @cross_validate_option
+@max_luts_option
+@epochs_option
+@distort_option
 @bits_option
 @click.option(
     "--address-bits",
@@ -128,7 +142,7 @@ SECTIONS = {
 @click.option(
     "--bleach",
     type=BleachingType(),
-    help="Set the bleaching threshold, or search it.  [default: auto]",
+    help="Set the bleaching threshold.  [default: auto]",
 )
 @click.option(
     "--balance", is_flag=True, default=None, help="Weigh all classes equally, so that rare ones are found."
@@ -137,23 +151,21 @@ SECTIONS = {
     "--luts-per-pixel",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Find the most accurate classifier of at most N LUTs per pixel.",
+    help="Find the best of at most N LUTs per pixel.",
 )
 @click.option(
     "--neighbourhood",
     type=click.Choice(["3", "5"]),
     help="Classify pixels by the 3x3 or 5x5 around them.",
 )
-@click.option(
-    "--pareto", is_flag=True, help="Write a model for each point of the front of LUTs and accuracy."
-)
+@click.option("--pareto", is_flag=True, help="Write each best model by LUTs and accuracy.")
 @click.option(
     "--trials",
     type=click.IntRange(min=0),
     metavar="N",
     default=20,
     show_default=True,
-    help="Try N random mappings for --luts-per-pixel or --pareto.",
+    help="Try N random mappings of each.",
 )
 @seed_option
 @output_option("Write the model to this file.", is_file=True, required=True)
@@ -167,6 +179,9 @@ def train_command(
     chips: Path | None,
     table: Path | None,
     label: str | None,
+    max_luts: int | None,
+    epochs: int | None,
+    distort: int,
     luts_per_pixel: int | None,
     neighbourhood: str | None,
     pareto: bool,
@@ -188,6 +203,26 @@ def train_command(
       wnn2hdl train --images IMAGES --masks MASKS -o model.json
       wnn2hdl train --table data.csv --label COLUMN --levels 16 -o model.json
     """
+    if table is not None and max_luts is not None:
+        refuse((*IMAGES, *OTHERS, *DISCRIMINATORS, *WISARD), "--max-luts trains no discriminators")
+        make_folder(output.parent)
+        with held(output, "model"), progress() as report:
+            summary = train_luts_on_table(
+                table,
+                label,
+                max_luts=max_luts,
+                levels=levels,
+                words=words,
+                epochs=epochs,
+                distort=distort,
+                seed=seed,
+                command=spoken_command({"output", "as_json"}),
+                output=output,
+                progress=report,
+            )
+        emit(summary, luts_sentence(summary), as_json=as_json)
+        return
+    refuse(LUT_NETWORK, "networks of look-up tables are trained with both --table and --max-luts")
     if table is not None:
         refuse((*IMAGES, *OTHERS, "--bits", "--balance"), "a table has no pictures")
         bleach = discriminators["bleach"]

@@ -24,6 +24,10 @@ TRAINING = ("--table", "--label", "--thermometer", "--levels", "--input", "--map
 """The options of training on a table, for the sections of a command's help."""
 
 
+WISARD = ("--thermometer", "--mapping", "--cross-validate")
+"""Those of them that only a WiSARD has."""
+
+
 class WordsType(click.ParamType[FixedPoint]):
     """``Q3.12`` or ``UQ8.0``: a format of fixed-point words."""
 
@@ -52,7 +56,7 @@ thermometer_option = click.option(
     metavar="NAME",
     default="quantiles",
     show_default=True,
-    help="Use quantiles, uniform or gaussian.",
+    help="Use quantiles, uniform, gaussian.",
 )
 levels_option = click.option(
     "--levels",

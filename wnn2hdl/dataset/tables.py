@@ -22,11 +22,13 @@ class FeatureTable:
         columns: names of the features.
         features: float64 ``[samples, features]``, finite.
         labels: class name of each sample.
+        grid: rows and columns, if each sample came as an array of two axes; its features are row by row.
     """
 
     columns: tuple[str, ...]
     features: NDArray[np.float64]
     labels: tuple[str, ...]
+    grid: tuple[int, int] | None = None
 
 
 def read_table(path: Path, label: str | None, part: Literal["train", "test"] = "test") -> FeatureTable:
@@ -89,7 +91,8 @@ def _arrays(path: Path, label: str | None, part: str) -> FeatureTable:
     if not np.isfinite(rows).all():
         raise InputError("a feature is not a finite number", value=path, hint="fill or drop such rows")
     columns = tuple(f"x{position}" for position in range(rows.shape[1]))
-    return FeatureTable(columns, rows, tuple(map(str, labels.tolist())))
+    grid = features.shape[1:] if features.ndim == 3 else None
+    return FeatureTable(columns, rows, tuple(map(str, labels.tolist())), grid)
 
 
 def _table(lines: Iterator[list[str]], path: Path, label: str) -> FeatureTable:

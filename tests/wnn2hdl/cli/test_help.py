@@ -64,7 +64,7 @@ def test_an_option_is_a_flag_a_place_or_a_value_in_all_commands() -> None:
 @pytest.mark.parametrize(
     ("line", "complaint"),
     [
-        (("train", "--max-luts", "2"), "No such option '--max-luts'; did you mean --luts-per-pixel?"),
+        (("train", "--pixel-budget", "2"), "No such option '--pixel-budget'; did you mean --luts-per-pixel?"),
         (
             ("compile", "--luts-per-pixel", "2"),
             "No such option '--luts-per-pixel'; did you mean --edge-luts or --max-luts?",

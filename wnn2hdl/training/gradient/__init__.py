@@ -1,0 +1,21 @@
+"""Networks of 6-input look-up tables, trained by gradient.
+
+One layer of nodes reads chosen bits of the features; each node votes for a class, and the most votes win.
+What a node reads and what its table says are both learned, by finite differences that pass straight through
+the steps (as in DWN, Bacellar et al., ICML 2024). `train_network` trains one, for a number of nodes or
+within a number of LUTs; `LutNetworkClassifier` does so as a scikit-learn estimator.
+"""
+
+from wnn2hdl.training.gradient.classifier import LutNetworkClassifier
+from wnn2hdl.training.gradient.network import Architecture, Trained, train_network
+from wnn2hdl.training.gradient.training import Recipe, enough_epochs, usual_heat
+
+__all__ = [
+    "Architecture",
+    "LutNetworkClassifier",
+    "Recipe",
+    "Trained",
+    "enough_epochs",
+    "train_network",
+    "usual_heat",
+]

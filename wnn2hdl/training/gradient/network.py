@@ -1,0 +1,170 @@
+"""From labelled features to a voting network of 6-input tables."""
+
+import hashlib
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.models import LutGroupModel
+from wnn2hdl.progress import Progress
+from wnn2hdl.training.gradient.budget import Budget
+from wnn2hdl.training.gradient.checkpoint import Checkpoint
+from wnn2hdl.training.gradient.cost import affordable_nodes
+from wnn2hdl.training.gradient.inputs import InputBits, choose_inputs
+from wnn2hdl.training.gradient.loss import MAX_BATCH, node_effects, temperature
+from wnn2hdl.training.gradient.pictures import distorted
+from wnn2hdl.training.gradient.samples import Samples, split
+from wnn2hdl.training.gradient.training import Recipe, Training
+
+SAVE_BATCHES = 2000
+"""After about so many batches a training is saved, at the end of an epoch."""
+
+_EFFECT_SAMPLES = 10_000
+"""Samples on which the effect of each node is measured."""
+
+
+@dataclass(frozen=True)
+class Architecture:
+    """What is trained.
+
+    Attributes:
+        words: the format in which hardware reads the features.
+        nodes: for each class, if there is no budget.
+        max_luts: the budget of the whole network; None for none. As many nodes as fit are trained.
+        levels: thresholds for each feature, of which the most significant bit of its words is one if that
+            varies.
+        grid: rows and columns of the picture whose pixels are the features, row by row; None if they are no
+            picture. Nodes may then also read whether any of 2x2 pixels is bright.
+        distortions: how often each picture is distorted for training; needs a grid.
+        validation: share of the samples that is kept for validation; 0 to train on all, to the end.
+    """
+
+    words: FixedPoint
+    nodes: int = 8
+    max_luts: int | None = None
+    levels: int = 8
+    grid: tuple[int, int] | None = None
+    distortions: int = 0
+    validation: float = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Trained:
+    """A network and what training showed.
+
+    Attributes:
+        model: the network.
+        validation: its accuracy on the samples kept for validation; None if there were none.
+        epochs: that were trained.
+        nodes: for each class.
+        luts: of the whole network, as counted; None without a budget.
+    """
+
+    model: LutGroupModel
+    validation: float | None
+    epochs: int
+    nodes: int
+    luts: int | None
+
+
+def train_network(
+    features: NDArray[np.float64],
+    labels: NDArray[np.int64],
+    classes: tuple[str, ...],
+    architecture: Architecture,
+    recipe: Recipe,
+    progress: Progress,
+    checkpoint: Path | None = None,
+) -> Trained:
+    """Train a network by gradient.
+
+    The same samples, architecture and recipe give the same network, on any number of threads, and however
+    often the training was killed and started again.
+
+    Args:
+        features: finite numbers ``[samples, features]``.
+        labels: class index of each, ``[samples]``.
+        classes: class names.
+        architecture: what is trained.
+        recipe: how.
+        progress: called with each epoch.
+        checkpoint: a file through which a killed training goes on; it is removed at the end. None for none.
+
+    Raises:
+        InputError: the features cannot be read as said, a class has no sample, or nothing fits the budget.
+        ToolError: Yosys is missing or failed; it counts the LUTs of a budget.
+    """
+    chosen, kept = split(labels, architecture.validation, recipe.seed)
+    missing = sorted(set(range(len(classes))) - set(labels[chosen].tolist()))
+    if missing:
+        raise InputError("a class has no sample to train on", value=classes[missing[0]], hint="add some")
+    inputs = choose_inputs(features[chosen], architecture.words, architecture.levels, architecture.grid)
+    samples = Samples(_copies(features[chosen], inputs, architecture, recipe), labels[chosen], recipe.seed)
+    validation = inputs.rows(features[kept]), labels[kept]
+    budget = None if architecture.max_luts is None else Budget(architecture.max_luts, inputs, classes)
+    nodes = architecture.nodes if budget is None else affordable_nodes(budget.max_luts, len(classes))
+
+    training = Training(recipe, samples, inputs.luts, len(classes), nodes)
+    saved = (
+        None
+        if checkpoint is None
+        else Checkpoint(checkpoint, _identity(features, labels, architecture, recipe))
+    )
+    if saved is not None and (arrays := saved.read()) is not None:
+        training.restore(arrays)
+    save_epochs = max(1, SAVE_BATCHES * MAX_BATCH // len(samples))
+
+    def ranked() -> NDArray[np.float64]:
+        rows, right = samples.some(_EFFECT_SAMPLES)
+        return node_effects(
+            training.layer, rows, right, temperature(training.layer.nodes_per_class, recipe.heat)
+        )
+
+    progress("training", training.epoch, recipe.epochs)
+    while not training.finished:
+        if training.wiring and training.epoch >= recipe.wiring_epochs:
+            training.freeze(training.layer if budget is None else budget.fitted(training.layer, ranked()))
+        training.run_epoch()
+        if not training.wiring:
+            training.validate(validation)
+        if saved is not None and training.epoch % save_epochs == 0:
+            saved.write(training.arrays())
+        progress("training", training.epoch, recipe.epochs)
+    training.take_best()
+    layer = training.layer if budget is None else budget.fitted(training.layer, ranked())
+    right = float((layer.predict(validation[0]) == validation[1]).mean()) if len(kept) else None
+    trained = Trained(
+        inputs.model(layer, classes),
+        right,
+        training.epoch,
+        layer.nodes_per_class,
+        None if budget is None else budget.luts(layer),
+    )
+    if saved is not None:
+        saved.remove()
+    return trained
+
+
+def _copies(
+    features: NDArray[np.float64], inputs: InputBits, architecture: Architecture, recipe: Recipe
+) -> list[NDArray[np.uint8]]:
+    copies = [inputs.rows(features)]
+    for number in range(architecture.distortions):
+        assert architecture.grid is not None
+        seed = recipe.seed + number
+        copies.append(inputs.rows(distorted(features, architecture.grid, seed)))
+    return copies
+
+
+def _identity(
+    features: NDArray[np.float64], labels: NDArray[np.int64], architecture: Architecture, recipe: Recipe
+) -> dict[str, Any]:
+    """All that decides a training."""
+    digest = hashlib.sha256(features.tobytes() + labels.tobytes()).hexdigest()
+    shape = asdict(architecture) | {"words": str(architecture.words)}
+    return {"samples": digest, "architecture": shape, "recipe": asdict(recipe)}
