@@ -174,12 +174,20 @@ def _report(
             "mapping": dict(planned.methods),
             "simulated_vectors": dict(checked.vectors),
             "simulated_before": ", ".join(checked.simulated_before),
+            "pruned": _pruned(planned),
             "left_out": {"care": planned.left_out, "test_images": measured.left_out},
         },
         hashes={"model": design.model.digest()},
         tools=generators(),
         seconds={**clock.seconds, **checked.seconds},
     )
+
+
+def _pruned(planned: Plan) -> dict[str, int | None]:
+    found = planned.pruned
+    if found is None:
+        return {}
+    return {"tables": found.tables, "of": found.of, "rows": found.rows, "changed": found.changed}
 
 
 def _care(design: Design, coverage: float | None) -> Care:

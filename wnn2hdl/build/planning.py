@@ -9,8 +9,11 @@ from wnn2hdl.build.design import Design, Mode
 from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
 from wnn2hdl.build.minimising import minimise_once
+from wnn2hdl.build.pruning import Pruned, prune_exactly, prune_on_rows
+from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.edges import RULES, Agreement, from_file
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.rows import feature_bits, require_vector_classifier, scaled
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, PictureEncoder, Style, WisardModel
 from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.features import FixedPoint, Thermometer
@@ -32,6 +35,9 @@ class CompileOptions:
         name: what the names of all Verilog modules begin with; None makes it from the name of the folder.
         input: format of the words that a network reads as features, as in ``Q3.12`` (a sign bit, 3 whole and
             12 fraction bits) or ``UQ8.0`` (without a sign); None for what the model states.
+        prune: leave out tables of a network that change no answer; or, with `prune_table`, hardly any.
+        prune_table: file of feature vectors on which answers are compared; `label` and `raw` hold for it too.
+        most_changed: share of its rows whose answers may change.
         mode: equal to the model on every input, or on the care set.
         care: folder of the imagery that makes the care set; needed in domain mode.
         care_minimum: how often a code must occur in it to be cared for.
@@ -55,6 +61,9 @@ class CompileOptions:
     target: str | None = None
     name: str | None = None
     input: str | None = None
+    prune: bool = False
+    prune_table: Path | None = None
+    most_changed: float = 0.0
     mode: Mode = "exact"
     care: Path | None = None
     care_minimum: int = 1
@@ -97,6 +106,7 @@ class Plan:
         methods: how the LUT network of each table was found.
         agreement: how far the filter's edges are Canny's; None without imagery to measure it on.
         left_out: share of the imagery's pixels without data, 0 to 1; None without a care set of imagery.
+        pruned: what was left out of the network; None if that was not asked for.
     """
 
     design: Design
@@ -104,6 +114,7 @@ class Plan:
     methods: dict[str, str]
     agreement: Agreement | None
     left_out: float | None
+    pruned: Pruned | None
 
 
 def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress) -> Plan:
@@ -121,6 +132,8 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
     """
     if options.input is not None:
         model = with_input(model, options.input)
+    pruned = _prune(model, options, progress)
+    model = model if pruned is None else pruned.model
     target = target_for(model, options.target)
     edges, care, seen = None, None, None
     if isinstance(model, WisardModel) and isinstance(model.encoder, PictureEncoder):
@@ -147,7 +160,22 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
     if imagery and edges is not None and isinstance(model, WisardModel):
         agreement = edge_agreement(edges, model, Imagery(imagery, options.reading), progress)
     left_out = None if seen is None else seen.left_out
-    return Plan(design, minimised.covers, minimised.methods, agreement, left_out)
+    return Plan(design, minimised.covers, minimised.methods, agreement, left_out, pruned)
+
+
+def _prune(model: AnyModel, options: CompileOptions, progress: Progress) -> Pruned | None:
+    if not options.prune:
+        if options.prune_table is not None or options.most_changed:
+            raise InputError("--prune-table and --most-changed are for --prune", hint="give --prune too")
+        return None
+    if options.prune_table is None:
+        if options.most_changed:
+            raise InputError("whose answers may change?", value="--most-changed", hint="give --prune-table")
+        return prune_exactly(model)
+    classifier = require_vector_classifier(model, "the model given")
+    features = scaled(classifier, read_table(options.prune_table, options.label, "train"), options.raw)
+    bits = feature_bits(classifier, features)
+    return prune_on_rows(model, bits, int(options.most_changed * len(bits)), progress)
 
 
 def with_input(model: AnyModel, words: str) -> AnyModel:

@@ -34,7 +34,9 @@ SAMPLE_SIDE = 256
 SAMPLE_SEED = 1000
 
 _FLAGS = {"care_minimum": "--care-min"}
-_NO_FLAG = frozenset({"sobel_threshold"})
+_NO_FLAG = frozenset({"sobel_threshold", "prune", "prune_table", "most_changed"})
+"""Options that users cannot give, and those that have done their work on the build's model."""
+
 _EDGE_SETS = frozenset({*RULES, "learned"})
 
 

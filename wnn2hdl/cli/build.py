@@ -20,7 +20,7 @@ from wnn2hdl.cli.pictures import (
     palette_option,
     scale_option,
 )
-from wnn2hdl.cli.vectors import label_option, raw_option
+from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style
 from wnn2hdl.ir.models import load_model
@@ -40,7 +40,7 @@ SECTIONS = {
     ),
     "Edge filter": ("--edges", "--edge-images", "--edge-patterns", "--edge-luts"),
     "Pictures": ("--test-images", "--test-masks", *MASKS, *READING),
-    "Feature vectors": ("--test-table", "--label", "--raw"),
+    "Feature vectors": ("--prune", "--prune-table", "--most-changed", "--test-table", "--label", "--raw"),
 }
 
 
@@ -55,19 +55,20 @@ SECTIONS = {
 )
 @click.option(
     "--name",
-    help="Begin all module names with this.  [default: the folder's name]",
+    help="Begin module names with this.  [default: the folder's name]",
 )
 @click.option(
     "--input",
     metavar="FORMAT",
-    help="Read features as words of this format, as in Q3.12.  [default: the model's]",
+    help="Read features as words, as in Q3.12.  [default: the model's]",
 )
 @click.option(
     "--mode",
     type=click.Choice(get_args(Mode)),
+    metavar="MODE",
     default="exact",
     show_default=True,
-    help="Equal the model on every input, or on the codes that occur in --care.",
+    help="Equal the model on every input (exact), or on the codes that occur in --care (domain).",
 )
 @click.option("--care", type=folder, help="Take the care set of domain mode from this imagery.")
 @click.option(
@@ -103,6 +104,7 @@ SECTIONS = {
 @click.option(
     "--style",
     type=click.Choice(get_args(Style)),
+    metavar="STYLE",
     default="cells",
     show_default=True,
     help="Write LUTs as cells, which synthesis keeps, or as equations, which it may change.",
@@ -117,7 +119,10 @@ SECTIONS = {
 )
 @click.option("--test-images", type=folder, help="Measure the report's accuracies on these pictures.")
 @click.option("--test-masks", type=folder, help="Find the masks of --test-images in this folder.")
-@click.option("--test-table", type=file, help="Measure the report's accuracies on this CSV or .npz file.")
+@click.option("--prune", is_flag=True, help="Leave out tables of a network that change no answer.")
+@click.option("--prune-table", type=file, help="Also those that hardly change this table's answers.")
+@most_changed_option
+@click.option("--test-table", type=file, help="Measure accuracies on this CSV or .npz file.")
 @label_option
 @raw_option
 @palette_option

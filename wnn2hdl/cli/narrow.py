@@ -10,11 +10,10 @@ from rich.console import Console
 from rich.table import Table
 
 from wnn2hdl.build.narrowing import Narrowed, encoder_luts, narrow_features, narrow_formats
-from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, output_option
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.vectors import label_option, raw_option, table_option
+from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option, table_option
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import VectorClassifier, feature_answers, load_vector_classifier, scaled
@@ -29,14 +28,7 @@ SECTIONS = {"Feature vectors": ("--table", "--label", "--raw", "--most-changed")
 @table_option
 @label_option
 @raw_option
-@click.option(
-    "--most-changed",
-    type=FiniteRange(0, 1),
-    metavar="SHARE",
-    default=0.0,
-    show_default=True,
-    help="Let this share of the answers change.",
-)
+@most_changed_option
 @json_option
 def narrow_command(
     model: Path,

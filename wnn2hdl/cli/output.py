@@ -84,6 +84,12 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
         captured.get().rstrip(),
         f"proof: {proof['status']} in {proof['seconds']:.1f} s, {proof['method']}{earlier}",
     ]
+    pruned = report["options"].get("pruned")
+    if pruned:
+        text = f"pruned: {pruned['tables']} of {pruned['of']} tables; the proof is about the pruned model"
+        if pruned["rows"] is not None:
+            text += f"; {pruned['changed']} of {pruned['rows']} answers change on --prune-table"
+        lines.append(text)
     rows = report["rows"]
     for name, key, span in (
         ("model", "model_accuracy", rows["model_interval"]),

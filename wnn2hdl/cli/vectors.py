@@ -7,6 +7,7 @@ from typing import Any, get_args
 import click
 import numpy as np
 
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.options import file
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.encode.thermometer import Spacing
@@ -48,7 +49,15 @@ label_option = click.option("--label", metavar="COLUMN", help="Take the classes 
 raw_option = click.option(
     "--raw/--scaled",
     default=None,
-    help="Scale the table's features as the model says, or take them as they are.",
+    help="Scale features as the model says, or leave them.",
+)
+most_changed_option = click.option(
+    "--most-changed",
+    type=FiniteRange(0, 1),
+    metavar="SHARE",
+    default=0.0,
+    show_default=True,
+    help="Let this share of the answers change.",
 )
 thermometer_option = click.option(
     "--thermometer",

@@ -86,6 +86,15 @@ def feature_answers(model: VectorClassifier, features: NDArray[np.float64]) -> N
     """The index of the class that a model answers for features ``[samples, features]``: int64 ``[samples]``.
 
     Raises:
+        InputError: as `feature_bits`.
+    """
+    return model.evaluate(feature_bits(model, features))
+
+
+def feature_bits(model: VectorClassifier, features: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """The input bits of a model for features ``[samples, features]``: bool ``[samples, width]``.
+
+    Raises:
         InputError: there are more or fewer features than the model reads, or they are none that it can read.
     """
     encoder = model.encoder
@@ -96,10 +105,9 @@ def feature_answers(model: VectorClassifier, features: NDArray[np.float64]) -> N
             value=f"{features.shape[1]}, not {encoder.features}",
         )
     try:
-        bits = encoder.bits(features)
+        return encoder.bits(features)
     except ValueError as error:
         raise InputError("the model cannot read the features", value=error) from error
-    return model.evaluate(bits)
 
 
 def confusion_of(truth: NDArray[np.int64], answers: NDArray[np.int64], classes: int) -> NDArray[np.int64]:

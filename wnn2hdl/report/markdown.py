@@ -101,6 +101,13 @@ def _answers(report: Mapping[str, Any]) -> str:
         ]
         changed = f"{form(rows['changed'])} of {form(rows['count'])}"
         answers.append(("rows on which circuit and model as given differ", changed))
+    pruned = report["options"].get("pruned")
+    if pruned:
+        tables = f"{form(pruned['tables'])} of {form(pruned['of'])}"
+        answers.append(("tables pruned; the proof is about the pruned model", tables))
+        if pruned["rows"] is not None:
+            changed = f"{form(pruned['changed'])} of {form(pruned['rows'])}"
+            answers.append(("answers that pruning changes where it was decided", changed))
     if target is None or target.classifies:
         care = report["care"]
         answers += [

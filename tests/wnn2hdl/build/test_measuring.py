@@ -16,7 +16,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import row_answers
 from wnn2hdl.ir import BitSelect, WisardModel
 from wnn2hdl.ir.features import FixedPoint
-from wnn2hdl.ir.models import LutGroupModel
+from wnn2hdl.ir.models import LutGroupModel, load_model
 from wnn2hdl.report import report_markdown
 
 
@@ -89,3 +89,44 @@ def test_a_table_is_no_test_of_a_model_of_pixels(table: Path) -> None:
     pixels = WisardModel(BitSelect(("R7",)), ("a", "b"), np.array([[[0]]]), np.array([[[1, 0]], [[0, 1]]]), 1)
     with pytest.raises(InputError, match="the model does not classify feature vectors"):
         labelled_data(pixels, CompileOptions(test_table=table, label="class"))
+
+
+@pytest.mark.slow
+def test_a_pruned_model_is_what_is_built_and_proved(
+    model: LutGroupModel, table: Path, tmp_path: Path
+) -> None:
+    options = CompileOptions(
+        input="Q2.4", prune=True, prune_table=table, most_changed=0.1, test_table=table, label="class"
+    )
+    with pytest.raises(InputError, match="the table has no such column"):
+        compile_model(model, tmp_path / "net", replace(options, label="other"), silent)
+    report = compile_model(model, tmp_path / "net", options, silent).report
+    pruned = report["options"]["pruned"]
+    assert 0 < pruned["tables"] < pruned["of"] == 12
+    assert 0 < pruned["changed"] <= 30
+    built = load_model(tmp_path / "net" / "model.json")
+    assert isinstance(built, LutGroupModel)
+    assert built.layers[-1].nodes == 12 - pruned["tables"]
+    assert report["proof"]["status"] == "proved"
+    assert report["model_accuracy"] == pytest.approx(250 / 300)
+    assert report["rows"]["changed"] >= pruned["changed"] - 10
+    assert "--prune" not in report["command"]
+    text = report_markdown(report)
+    assert f"| tables pruned; the proof is about the pruned model | {pruned['tables']} of 12 |" in text
+    page = (tmp_path / "net" / "report.html").read_text()
+    assert f'data-key="options.pruned.changed" value="{pruned["changed"]}"' in page
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (CompileOptions(prune_table=Path("t.csv")), "are for --prune; give --prune too"),
+        (CompileOptions(most_changed=0.1), "are for --prune"),
+        (CompileOptions(prune=True, most_changed=0.1), "whose answers may change"),
+    ],
+)
+def test_pruning_asks_for_what_it_needs(
+    model: LutGroupModel, tmp_path: Path, options: CompileOptions, line: str
+) -> None:
+    with pytest.raises(InputError, match=line):
+        compile_model(model, tmp_path / "net", options, silent)
