@@ -16,16 +16,14 @@ from wnn2hdl.training.gradient.budget import Budget
 from wnn2hdl.training.gradient.checkpoint import Checkpoint
 from wnn2hdl.training.gradient.cost import affordable_nodes
 from wnn2hdl.training.gradient.inputs import InputBits, choose_inputs
-from wnn2hdl.training.gradient.loss import MAX_BATCH, node_effects, temperature
+from wnn2hdl.training.gradient.layer import VotingLayer
+from wnn2hdl.training.gradient.loss import MAX_BATCH
 from wnn2hdl.training.gradient.pictures import distorted
 from wnn2hdl.training.gradient.samples import Samples, split
 from wnn2hdl.training.gradient.training import Recipe, Training
 
 SAVE_BATCHES = 2000
 """After about so many batches a training is saved, at the end of an epoch."""
-
-_EFFECT_SAMPLES = 10_000
-"""Samples on which the effect of each node is measured."""
 
 
 @dataclass(frozen=True)
@@ -119,16 +117,10 @@ def train_network(
         training.restore(arrays)
     save_epochs = max(1, SAVE_BATCHES * MAX_BATCH // len(samples))
 
-    def ranked() -> NDArray[np.float64]:
-        rows, right = samples.some(_EFFECT_SAMPLES)
-        return node_effects(
-            training.layer, rows, right, temperature(training.layer.nodes_per_class, recipe.heat)
-        )
-
     progress("training", training.epoch, recipe.epochs)
     while not training.finished:
         if training.wiring and training.epoch >= recipe.wiring_epochs:
-            training.freeze(training.layer if budget is None else budget.fitted(training.layer, ranked()))
+            training.freeze(_fitted(training, budget))
         training.run_epoch()
         if not training.wiring:
             training.validate(validation)
@@ -136,7 +128,7 @@ def train_network(
             saved.write(training.arrays())
         progress("training", training.epoch, recipe.epochs)
     training.take_best()
-    layer = training.layer if budget is None else budget.fitted(training.layer, ranked())
+    layer = _fitted(training, budget)
     right = float((layer.predict(validation[0]) == validation[1]).mean()) if len(kept) else None
     trained = Trained(
         inputs.model(layer, classes),
@@ -148,6 +140,11 @@ def train_network(
     if saved is not None:
         saved.remove()
     return trained
+
+
+def _fitted(training: Training, budget: Budget | None) -> VotingLayer:
+    """The layer as it is, with its best nodes where there is a budget."""
+    return training.layer if budget is None else budget.fitted(training.layer, training.effects())
 
 
 def _copies(

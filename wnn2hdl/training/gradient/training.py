@@ -11,6 +11,7 @@ from wnn2hdl.training.gradient.adam import Adam, mean_squares
 from wnn2hdl.training.gradient.layer import ADDRESSES, VotingLayer
 from wnn2hdl.training.gradient.loss import (
     MAX_BATCH,
+    node_effects,
     slopes,
     temperature,
     weight_gradient,
@@ -25,6 +26,9 @@ MIN_BATCHES = 4000
 MANY_SAMPLES = 20_000
 MOST_HEAT = 1.0
 """See `usual_heat`."""
+
+_EFFECT_SAMPLES = 10_000
+"""Samples on which the effect of each node is measured."""
 
 
 @dataclass(frozen=True)
@@ -155,6 +159,12 @@ class Training:
         self._by_weight.step(layer.weights, gradient, recipe.weight_rate * rate)
         np.clip(layer.weights, -1, 1, out=layer.weights)
         self._step += 1
+
+    def effects(self) -> NDArray[np.float64]:
+        """How much each node matters on some of the samples, see `node_effects`: float64 ``[nodes]``."""
+        rows, labels = self._samples.some(_EFFECT_SAMPLES)
+        heat = temperature(self.layer.nodes_per_class, self._recipe.heat)
+        return node_effects(self.layer, rows, labels, heat)
 
     def validate(self, validation: Batch) -> None:
         """Keep the weights if none were better in validation; without samples there, the last ones are."""
