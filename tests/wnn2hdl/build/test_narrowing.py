@@ -1,6 +1,7 @@
 """Thresholds move to coarser numbers as long as hardly any answer changes, and every count is true."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from tests.small_networks import encoder_of, lut_network
 from wnn2hdl.build.narrowing import Narrowed, encoder_luts, narrow_features, narrow_formats
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import feature_answers
+from wnn2hdl.importers import ImportOptions, import_model
 from wnn2hdl.ir import Thermometer, WisardModel, Words
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel, LutLayer
@@ -99,3 +101,17 @@ def test_models_that_cannot_be_narrowed() -> None:
         InputError, match=r"the finest words change more answers than allowed: 1 of 2 with 12"
     ):
         narrow_features(fine, np.array([[0.00009], [0.00011]]), 0, silent)
+
+
+@pytest.mark.realdata
+@pytest.mark.slow
+def test_the_published_network_for_jets_needs_half_the_encoder(realdata: Path) -> None:
+    _, model = import_model(next((realdata / "dwn").glob("*t200*checkpoint.pt")), ImportOptions())
+    assert isinstance(model, LutGroupModel)
+    with np.load(next((realdata / "dwn").glob("*t200*testvectors.npz"))) as vectors:
+        features, recorded = vectors["x_raw"].astype(np.float64), vectors["pred"]
+    found = narrow_features(model, features, 2, silent)
+    assert np.count_nonzero(feature_answers(found.model, features) != recorded) <= 2
+    luts = encoder_luts(found.model)
+    assert luts is not None
+    assert luts <= 150  # of 309 at Q3.12
