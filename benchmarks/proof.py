@@ -7,6 +7,7 @@ text: hierarchy, compressors, matcher and all.
 import re
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,9 +41,9 @@ def proof_times(design: Design, text: str) -> None:
     for part, definition in design.parts.items():
         if part not in design.specification.claims:
             continue
-        circuit = Circuit((text,), design.module(part))
+        circuit = Circuit((text,), design.module(part), definition.latency)
         proof = prove(design.specification, {part: circuit})[part]
-        netlist = Circuit((synthesise(text, circuit.top).netlist_verilog,), circuit.top)
+        netlist = replace(circuit, sources=(synthesise(text, circuit.top).netlist_verilog,))
         after = prove_netlists({part: (circuit, netlist)}, {part: definition.widths})[part]
         print(f"  {part}: {proof.status} in {proof.seconds:.2f} s, ", end="")
         print(f"netlist {after.status} in {after.seconds:.2f} s")
@@ -76,12 +77,14 @@ def simulators_speed(design: Design, files: Files) -> None:
     windows = {port: np.concatenate([values] * repeats)[:WINDOWS] for port, values in inputs.items()}
     for simulator in SIMULATORS:
         started = time.perf_counter()
-        _, seconds = run_compiled(claim, design.module(claim.part), files.simulated, windows, simulator)
+        _, seconds = run_compiled(
+            claim, design.module(claim.part), files.simulated, windows, simulator, latency=design.top.latency
+        )
         whole = time.perf_counter() - started
         print(
             f"  {simulator}: {WINDOWS / seconds:.0f} windows per second, {WINDOWS / whole:.0f} with compiling"
         )
-    result = simulate(component(design.circuit, style=design.style), windows, claim.answers(windows))
+    result = simulate(component(design.top, style=design.style), windows, claim.answers(windows))
     print(f"  amaranth: {result.vectors_per_second:.0f} windows per second")
 
 

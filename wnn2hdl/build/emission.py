@@ -83,7 +83,7 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         ToolError: Yosys is missing or failed.
     """
     files = Files.of(design, Path())
-    part = elaborate.component(design.circuit, style=design.style)
+    part = elaborate.component(design.top, style=design.style)
     prefix = f"{design.name}_"
     baseline = sobel.Parameters(sobel_threshold).create()
     title = f"Baseline: 3x3 Sobel operator, |gx| + |gy| >= {sobel_threshold}."

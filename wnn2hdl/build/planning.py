@@ -16,6 +16,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import feature_bits, require_vector_classifier, scaled
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, PictureEncoder, Style, WisardModel
 from wnn2hdl.ir.care import CareSet, Codes
+from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.features import FixedPoint, Thermometer
 from wnn2hdl.ir.models import AnyModel, LogicModel
 from wnn2hdl.lower.table import care_set
@@ -24,6 +25,7 @@ from wnn2hdl.minimise import Minimised
 from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import AlphaMeaning, Reading
+from wnn2hdl.schedule import Stages, for_clock, for_stages
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,10 @@ class CompileOptions:
         edge_images: folder of the imagery from which patterns are learned; `care` if left out.
         edge_patterns: how many patterns are learned.
         edge_luts: learn only patterns that fit this many LUTs, 1 to 3; None sets no limit.
+        stages: make a pipeline of so many stages; its latency in cycles. None makes a combinational circuit,
+            unless there is a `clock`.
+        clock: make a pipeline of as few stages as a clock of so many megahertz allows by the delay model of
+            `wnn2hdl.schedule`.
         style: how LUT networks are written: as cells of the vendor, or as equations.
         effort: 0 to 3, how long to look for a smaller circuit.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
@@ -71,6 +77,8 @@ class CompileOptions:
     edge_images: Path | None = None
     edge_patterns: int = 75
     edge_luts: int | None = None
+    stages: int | None = None
+    clock: float | None = None
     style: Style = "cells"
     effort: int = 1
     test_images: Path | None = None
@@ -127,9 +135,16 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         progress: reports every stage.
 
     Raises:
-        InputError: the model reads no pixels, or imagery is needed and missing or unusable.
+        InputError: the model reads no pixels, imagery is needed and missing or unusable, or no pipeline meets
+            the clock.
         CheckError: a minimised table differs from the model.
     """
+    if options.stages is not None and options.clock is not None:
+        raise InputError(
+            "the number of stages and the clock decide the same",
+            value="--stages and --clock",
+            hint="give one",
+        )
     if options.input is not None:
         model = with_input(model, options.input)
     pruned = _prune(model, options, progress)
@@ -153,6 +168,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         options.style,
         name,
         (),
+        _stages(minimised.circuit, options),
     )
     design = replace(design, header=design.made_by(options.effort, generators()))
     design.check()
@@ -192,6 +208,12 @@ def with_input(model: AnyModel, words: str) -> AnyModel:
     except ValueError as error:
         raise InputError("not a format of words", value=words, hint="write Q3.12 or UQ8.0") from error
     return replace(model, encoder=narrowed)
+
+
+def _stages(circuit: Circuit, options: CompileOptions) -> Stages | None:
+    if options.clock is not None:
+        return for_clock(circuit, options.clock)
+    return None if options.stages is None else for_stages(circuit, options.stages)
 
 
 def _care_sets(model: WisardModel, options: CompileOptions, seen: Survey) -> dict[str, CareSet]:

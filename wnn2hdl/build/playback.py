@@ -77,7 +77,7 @@ def play(
         ToolError: the simulator is missing or failed.
     """
     design, files, _ = open_build(folder)
-    top = design.circuit
+    top = design.top
     window = next((port for port in top.inputs if port.name == "window"), None)
     if window is None:
         raise InputError(
@@ -115,7 +115,9 @@ def play(
         ).seconds
     else:
         claim = design.specification.claims[top.name]
-        found, seconds = run_compiled(claim, design.module(top.name), files.simulated, inputs, simulator)
+        found, seconds = run_compiled(
+            claim, design.module(top.name), files.simulated, inputs, simulator, latency=top.latency
+        )
         _require_equal(found, expected, simulator)
         progress("simulating windows", total, total)
     compile_seconds = time.perf_counter() - started - seconds if simulator != "amaranth" else 0.0

@@ -49,11 +49,11 @@ def foreign_circuit(design: Design) -> list[str]:
     care = care_sets(design.circuit) if design.mode == "domain" else None
     wanted = design.target.lower(Ingredients(design.model, design.edges, care))
     faces = {name: _face(circuit) for name, circuit in wanted.definitions().items()}
-    problems = []
-    if design.circuit.name != wanted.name or list(design.parts) != list(faces):
+    problems, parts = [], design.circuit.definitions()
+    if design.circuit.name != wanted.name or list(parts) != list(faces):
         made = f"the target {design.target.name} is made of {', '.join(faces)}"
-        return [f"{DESIGN_FILE} holds the circuits {', '.join(design.parts)}; {made}"]
-    for name, circuit in design.parts.items():
+        return [f"{DESIGN_FILE} holds the circuits {', '.join(parts)}; {made}"]
+    for name, circuit in parts.items():
         for what, stated in _face(circuit).items():
             if stated != faces[name][what]:
                 problems.append(f"{DESIGN_FILE} has other {what} of the {name} than its target")
@@ -104,6 +104,8 @@ def false_statements(
     found = {
         "target": design.target.name,
         "mode": design.mode,
+        "latency": design.top.latency,
+        "stage_ps": None if design.stages is None else design.stages.period,
         "parts": {part: asdict(result.resources) for part, result in syntheses.items()},
         "count": OPTIONS,
         "utilisation": {part: shares(result.resources) for part, result in syntheses.items()},

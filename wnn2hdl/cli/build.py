@@ -8,6 +8,7 @@ import click
 from wnn2hdl.build.compile import compile_model, require_luts
 from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
+from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
@@ -25,6 +26,7 @@ from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style
 from wnn2hdl.ir.models import load_model
 from wnn2hdl.lower.targets import TARGETS
+from wnn2hdl.schedule import MAX_STAGES
 
 SECTIONS = {
     "Circuit": (
@@ -34,6 +36,8 @@ SECTIONS = {
         "--mode",
         "--care",
         "--care-min",
+        "--stages",
+        "--clock",
         "--style",
         "--effort",
         "--max-luts",
@@ -46,7 +50,7 @@ SECTIONS = {
 
 @app.command("compile", sections=SECTIONS)
 @click.argument("model", type=file)
-@output_option("Write the build into this folder, as in build/NAME.", required=True)
+@output_option("Write the build here, as in build/NAME.", required=True)
 @click.option(
     "--target",
     type=click.Choice(list(TARGETS)),
@@ -102,12 +106,24 @@ SECTIONS = {
     help="Learn only filters of at most N LUTs.",
 )
 @click.option(
+    "--stages",
+    type=click.IntRange(1, MAX_STAGES),
+    metavar="N",
+    help="Make a pipeline: N stages, latency N cycles.",
+)
+@click.option(
+    "--clock",
+    type=FiniteRange(min=0, min_open=True),
+    metavar="MHZ",
+    help="Make as few stages as this clock allows.",
+)
+@click.option(
     "--style",
     type=click.Choice(get_args(Style)),
     metavar="STYLE",
     default="cells",
     show_default=True,
-    help="Write LUTs as cells, which synthesis keeps, or as equations, which it may change.",
+    help="Write LUTs as cells, or as equations.",
 )
 @click.option(
     "--effort",

@@ -69,7 +69,10 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
     """What a build costs and whether it is proved, for a terminal."""
     table = Table(title=f"{report['name']}: {report['target']}, {report['mode']} mode", title_justify="left")
     table.add_column("part")
-    columns = {"luts": "LUTs", "muxf7": "MUXF7", "muxf8": "MUXF8", "carry4": "CARRY4", "delay_ps": "delay ps"}
+    columns = {"luts": "LUTs", "muxf7": "MUXF7", "muxf8": "MUXF8", "carry4": "CARRY4"}
+    if report["latency"]:
+        columns["ffs"] = "FFs"
+    columns["delay_ps"] = "delay ps"
     for heading in columns.values():
         table.add_column(heading, justify="right")
     for part, figures in report["parts"].items():
@@ -80,8 +83,11 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
         console.print(table)
     proof = report["proof"]
     earlier = f" (before: {', '.join(proof['before'])})" if proof.get("before") else ""
-    lines = [
-        captured.get().rstrip(),
+    lines = [captured.get().rstrip()]
+    if report["latency"]:
+        stage = f"a stage takes {report['stage_ps']} ps with wires, by the delay model"
+        lines.append(f"latency: {report['latency']} cycles; {stage}")
+    lines += [
         f"proof: {proof['status']} in {proof['seconds']:.1f} s, {proof['method']}{earlier}",
     ]
     pruned = report["options"].get("pruned")

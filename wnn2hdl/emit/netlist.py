@@ -8,7 +8,7 @@ import itertools
 import json
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -34,11 +34,13 @@ class Net:
         bits: its bits.
         hidden: whether its name was made up by a tool.
         initial: its value before the first clock edge, for a net that a flip-flop drives; None if undefined.
+        attributes: all others, as text.
     """
 
     bits: BitVector
     hidden: bool
     initial: int | None
+    attributes: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +121,7 @@ def _module(name: str, data: Mapping[str, Any], modules: Mapping[str, Any]) -> M
             tuple(details["bits"]),
             bool(details["hide_name"]),
             _initial(details["attributes"].get("init")),
+            {name: text for name, text in details["attributes"].items() if name != "init"},
         )
         for net, details in data["netnames"].items()
     }

@@ -33,6 +33,7 @@ class Statement:
         reads: the nets that it reads.
         text: an expression, for ``assign``; the pins of an instance; what a flip-flop stores.
         head: of an instance, what stands before its pins; empty of all others.
+        marks: of a flip-flop, the attributes of its net.
         clock: of a flip-flop, as an expression of the edge; None of all others.
         initial: of a flip-flop, the value before the first edge.
     """
@@ -41,6 +42,7 @@ class Statement:
     reads: frozenset[str]
     text: str
     head: str = ""
+    marks: str = ""
     clock: str | None = None
     initial: int | None = None
 
@@ -177,13 +179,12 @@ class _Translation:
     def _flip_flop(self, cell: Cell, net: str, output: BitVector) -> Statement:
         edge = "posedge" if cell.number("CLK_POLARITY") else "negedge"
         clock, data = f"{edge} {self._word(cell.inputs['CLK'])}", self._word(cell.inputs["D"])
-        initial = next(
-            (x.initial for x in self.module.nets.values() if x.bits == output and x.initial is not None), None
-        )
-        return Statement((net,), frozenset(self.read_nets), data, clock=clock, initial=initial)
+        nets = [x for x in self.module.nets.values() if x.bits == output]
+        initial = next((x.initial for x in nets if x.initial is not None), None)
+        marks = _marks({name: text for x in nets for name, text in x.attributes.items()})
+        return Statement((net,), frozenset(self.read_nets), data, marks=marks, clock=clock, initial=initial)
 
     def _instance(self, cell: Cell) -> Statement:
-        marks = "".join(f'(* {name} = "{text}" *) ' for name, text in cell.attributes.items())
         parameters = ", ".join(
             f".{name}({constant(int(digits, 2), len(digits))})" for name, digits in cell.parameters.items()
         )
@@ -193,8 +194,14 @@ class _Translation:
             word = self.names.driven(bits)
             driven += [net for net, _, _ in word]
             pins.append(f".{pin}({render_word(word, self.names.widths)})")
+        marks = _marks(cell.attributes)
         head = f"{marks}{cell.kind}{f' #({parameters})' if parameters else ''} {self.names.instances[cell]}"
         return Statement(tuple(driven), frozenset(self.read_nets), ", ".join(pins), head=head)
+
+
+def _marks(attributes: Mapping[str, str]) -> str:
+    marks = ", ".join(f'{name} = "{text}"' for name, text in attributes.items())
+    return f"(* {marks} *) " if marks else ""
 
 
 def _operator(cell: Cell) -> str | None:

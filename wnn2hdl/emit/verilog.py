@@ -77,7 +77,9 @@ def _text(module: Module) -> str:
     registers = {statement.drives[0]: statement for statement in found if statement.clock}
     ports = [f"    input  wire {range_of(len(bits))}{port}" for port, bits in module.inputs.items()]
     ports += [
-        f"    output {'reg ' if port in registers else 'wire'} {range_of(len(bits))}{port}"
+        f"    {registers[port].marks}output reg  {range_of(len(bits))}{port}"
+        if port in registers
+        else f"    output wire {range_of(len(bits))}{port}"
         for port, bits in module.outputs.items()
     ]
     levels = _levels(found)
@@ -85,7 +87,11 @@ def _text(module: Module) -> str:
         (statement for statement in found if not statement.clock),
         key=lambda statement: (UNUSED in statement.drives, levels[statement.drives[0]]),
     )
-    lines = [f"    reg {range_of(widths[net])}{net};" for net in registers if net not in module.outputs]
+    lines = [
+        f"    {register.marks}reg {range_of(widths[net])}{net};"
+        for net, register in registers.items()
+        if net not in module.outputs
+    ]
     lines += [_line(statement, widths, module) for statement in ordered]
     for net, register in registers.items():
         if register.initial is not None:

@@ -182,6 +182,9 @@ class BuildReport:
         name: of the build.
         target: the name of one of `wnn2hdl.lower.targets.TARGETS`.
         mode: ``exact`` or ``domain``.
+        latency: clock cycles from the inputs to the outputs of the target; 0 if it is combinational.
+        stage_ps: the longest path between the registers of its pipeline, in picoseconds, with wires, by the
+            delay model that chose the stages; None if it is combinational.
         parts: what each circuit costs by its name, ``sobel``, the baseline, among them.
         count: the command by which the parts were counted.
         device: the device of `utilisation`.
@@ -208,6 +211,8 @@ class BuildReport:
     target: str
     mode: str
     parts: Mapping[str, PartFigures]
+    latency: int = 0
+    stage_ps: int | None = None
     count: str | None = None
     device: str | None = None
     utilisation: Mapping[str, Mapping[str, float]] = field(default_factory=dict)

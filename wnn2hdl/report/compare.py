@@ -47,6 +47,8 @@ def compare(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, tu
         luts = [report["parts"].get(part, {}).get("luts") for report in (first, second)]
         if luts != [None, None]:
             figures.append(_number(f"LUTs of {part}", *luts, kind="count", good=-1))
+    latencies = [report.get("latency") for report in (first, second)]
+    figures.append(_number("latency in cycles", *latencies, kind="count", good=-1))
     delays = [report["parts"][report["target"]]["delay_ps"] for report in (first, second)]
     figures.append(_number("logic delay of the target", *delays, kind="ps", good=-1))
     for what, key in (("accuracy of the circuit", "accuracy"), ("accuracy of the model", "model_accuracy")):

@@ -40,6 +40,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
     sections = [
         f"# {escaped(report['name'])}",
         f"Target {report['target']}, mode {report['mode']}, proof: {escaped(_proof(report['proof']))}.",
+        _pipeline(report),
         "## Resources, measured",
         _resources(report["parts"]),
         f"Counted after `{report['count']}`." if report["count"] else "",
@@ -74,6 +75,15 @@ def _published(report: Mapping[str, Any]) -> str:
     heads = ["circuit", "LUTs", "registers", "source"]
     rows = [[row["what"], row["luts"], row["registers"], row["source"]] for row in published(report)]
     return "## Published, not measured here\n\n" + table(heads, rows) if rows else ""
+
+
+def _pipeline(report: Mapping[str, Any]) -> str:
+    latency = report.get("latency")
+    if not latency:
+        return ""
+    cycles = "1 cycle" if latency == 1 else f"{latency} cycles"
+    stage = f"a stage takes {form(report['stage_ps'], 'ps')} with wires, by the delay model"
+    return f"Latency {cycles}, and a new input in each; {stage}."
 
 
 def _proof(proof: Mapping[str, Any]) -> str:

@@ -1,7 +1,8 @@
 """Fast simulation of emitted Verilog in Verilator or Icarus: many samples in one run.
 
-A generated testbench reads the samples from a binary file, applies one per time unit and writes the outputs;
-the same testbench runs in both simulators. Verilator compiles it to a program first, Icarus interprets it.
+A generated testbench reads the samples from a binary file, applies one per time unit, or per cycle of a
+pipeline's clock, and writes the outputs; the same testbench runs in both simulators. Verilator compiles it to
+a program first, Icarus interprets it.
 """
 
 import tempfile
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.tools import Completed, run_icarus, run_verilator
+from wnn2hdl.verify.equivalence import CLOCK
 from wnn2hdl.verify.specification import Claim, Samples
 
 CompiledSimulator = Literal["verilator", "icarus"]
@@ -34,9 +36,10 @@ def run_compiled(
     inputs: Samples,
     simulator: CompiledSimulator,
     *,
+    latency: int = 0,
     timeout: float = 600.0,
 ) -> tuple[dict[str, Bits], float]:
-    """Simulate a combinational circuit.
+    """Simulate a circuit.
 
     Args:
         claim: its ports.
@@ -44,6 +47,7 @@ def run_compiled(
         sources: its Verilog files.
         inputs: values of each input port.
         simulator: who simulates.
+        latency: clock cycles from inputs to outputs; 0 of a combinational circuit.
         timeout: seconds for compiling and for running, each.
 
     Returns:
@@ -57,7 +61,7 @@ def run_compiled(
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
         bench = folder / "drive.v"
-        bench.write_text(_testbench(claim, module), encoding="utf-8")
+        bench.write_text(_testbench(claim, module, latency), encoding="utf-8")
         columns = [_to_bytes(inputs[port]) for port in claim.inputs]
         np.concatenate(columns, axis=1).tofile(folder / "inputs.bin")
         seconds = _RUN[simulator]([bench, *sources], "drive", cwd=folder, timeout=timeout).seconds
@@ -80,9 +84,11 @@ def run_compiled(
     return outputs, seconds
 
 
-def _testbench(claim: Claim, module: str) -> str:
+def _testbench(claim: Claim, module: str, latency: int) -> str:
+    clock = f"#1 {CLOCK} = 1'b1; #1 {CLOCK} = 1'b0;" if latency else ""
+    connections = [f".{CLOCK}({CLOCK})"] if latency else []
     total = sum(8 * _bytes(width) for width in claim.inputs.values())
-    connections, low = [], total
+    low = total
     for port, width in claim.inputs.items():
         low -= 8 * _bytes(width)
         connections.append(f".{port}(sample[{low + width - 1}:{low}])")
@@ -92,21 +98,28 @@ def _testbench(claim: Claim, module: str) -> str:
         connections.append(f".{port}({port})")
         padding = 4 * _digits(width) - width
         answer.append(f"{padding}'d0, {port}" if padding else port)
+    write = f'if (cycle >= {latency}) $fwrite(sink, "%h", {{{", ".join(answer)}}});'
     return "\n".join(
         [
             "`timescale 1ns / 1ns",
             "module drive;",
             f"  reg [{total - 1}:0] sample;",
             *wires,
-            "  integer source, sink, count;",
+            f"  reg {CLOCK} = 1'b0;",
+            "  integer source, sink, count, cycle;",
             f"  {module} circuit ({', '.join(connections)});",
             "  initial begin",
             '    source = $fopen("inputs.bin", "rb");',
             '    sink = $fopen("outputs.hex", "wb");',
             "    count = $fread(sample, source);",
-            f"    while (count == {total // 8}) begin",
-            f'      #1 $fwrite(sink, "%h", {{{", ".join(answer)}}});',
+            f"    for (cycle = 0; count == {total // 8}; cycle = cycle + 1) begin",
+            f"      #1 {write} {clock}",
             "      count = $fread(sample, source);",
+            "    end",
+            # What is still on its way.
+            f"    repeat ({latency}) begin",
+            f"      #1 {write} {clock}",
+            "      cycle = cycle + 1;",
             "    end",
             "    $fclose(sink);",
             "    $finish;",

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from amaranth.hdl import Cat
-from amaranth.lib.wiring import Component
 from amaranth.sim import Simulator
 
+from hdl_templates.hierarchy import Part
 from hdl_templates.vectors import pack, port_widths
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.verify.specification import Samples
@@ -22,7 +22,7 @@ Bench = Callable[[Any], Coroutine[Any, Any, None]]
 
 _REPORT_EVERY = 2048
 _PERIOD = 10e-9
-"""Seconds that a vector takes in a recording."""
+"""Seconds from edge to edge of the clock, and that a vector takes in a recording."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class SimulationResult:
 
 
 def simulate(
-    component: Component,
+    component: Part,
     inputs: Samples,
     expected: Samples,
     *,
@@ -47,17 +47,18 @@ def simulate(
     vcd: Path | None = None,
     vcd_vectors: int = 256,
 ) -> SimulationResult:
-    """Simulate a combinational component on all vectors and compare every output bit.
+    """Simulate a component on all vectors and compare every output bit.
 
-    Latency is 0 cycles: each vector is applied, settles, and is compared.
+    A new vector is applied in each cycle, settles, and is compared as many cycles later as the component's
+    latency says; with latency 0 there is no clock.
 
     Args:
         component: the circuit, as yet unused.
         inputs: for each input port its values, bool ``[vectors, width]``.
         expected: for each output port the model's answers.
         progress: called now and then.
-        vcd: where to record the waves of the first ``vcd_vectors`` vectors, 10 ns each; the recording ends at
-            a mismatch among them.
+        vcd: where to record the waves of the first ``vcd_vectors`` vectors, 10 ns each, and for as many
+            more as the latency; the recording ends at a mismatch among them.
         vcd_vectors: how many vectors are recorded.
 
     Raises:
@@ -69,22 +70,26 @@ def simulate(
     total = len(next(iter(answers.values())))
     started = time.perf_counter()
     if vcd is not None:
-        _record(component, _bench(component, stimulus, answers, range(min(vcd_vectors, total)), _PERIOD), vcd)
-    simulator = Simulator(component)
-    simulator.add_testbench(_bench(component, stimulus, answers, range(total), None, progress))
+        _record(component, _bench(component, stimulus, answers, min(vcd_vectors, total), recorded=True), vcd)
+    simulator = _simulator(component)
+    simulator.add_testbench(_bench(component, stimulus, answers, total, progress))
     simulator.run()
     return SimulationResult(total, time.perf_counter() - started)
 
 
 def _bench(
-    component: Component,
+    component: Part,
     stimulus: dict[str, list[int]],
     answers: dict[str, list[int]],
-    vectors: range,
-    period: float | None,
+    total: int,
     progress: Progress | None = None,
+    *,
+    recorded: bool = False,
 ) -> Bench:
-    """A testbench that applies the vectors in turn, each for ``period`` seconds; without one, time stands."""
+    """A testbench that applies the first vectors in turn.
+
+    Where there is no clock, each takes `_PERIOD` if it is recorded, and no time otherwise.
+    """
     sources = [getattr(component, name) for name in stimulus]
     offsets = [sum(len(port) for port in sources[:i]) for i in range(len(sources))]
     everything = Cat(*sources)
@@ -93,8 +98,8 @@ def _bench(
 
     async def bench(ctx: Any) -> None:
         last: tuple[int | None, ...] = (None,) * len(sources)
-        for i in vectors:
-            row = rows[i]
+        for cycle in range(total + component.latency):
+            row = rows[min(cycle, total - 1)]
             changed = [port for port, value in enumerate(row) if value != last[port]]
             last = row
             # `set` returns once all that depends on its ports has settled, so it is called once per vector.
@@ -102,20 +107,30 @@ def _bench(
                 ctx.set(sources[changed[0]], row[changed[0]])
             elif changed:
                 ctx.set(everything, sum(value << offset for value, offset in zip(row, offsets, strict=True)))
-            for name, port, values in sinks:
+            i = cycle - component.latency
+            for name, port, values in sinks if i >= 0 else ():
                 if ctx.get(port) != values[i]:
                     inputs = {source: values[i] for source, values in stimulus.items()}
                     raise _mismatch(component, i, inputs, name, values[i], ctx.get(port))
-            if period is not None:
-                await ctx.delay(period)
-            if progress and ((i + 1) % _REPORT_EVERY == 0 or i + 1 == len(vectors)):
-                progress(i + 1, len(vectors))
+            if component.clocked:
+                await ctx.tick()
+            elif recorded:
+                await ctx.delay(_PERIOD)
+            if progress and ((i + 1) % _REPORT_EVERY == 0 or i + 1 == total) and i >= 0:
+                progress(i + 1, total)
 
     return bench
 
 
-def _record(component: Component, bench: Bench, path: Path) -> None:
+def _simulator(component: Part) -> Simulator:
     simulator = Simulator(component)
+    if component.clocked:
+        simulator.add_clock(_PERIOD)
+    return simulator
+
+
+def _record(component: Part, bench: Bench, path: Path) -> None:
+    simulator = _simulator(component)
     try:
         with path.open("w", encoding="utf-8") as stream, simulator.write_vcd(stream):
             simulator.add_testbench(bench)
@@ -129,7 +144,7 @@ def _record(component: Component, bench: Bench, path: Path) -> None:
 
 
 def _mismatch(
-    component: Component, vector: int, inputs: dict[str, int], output: str, expected: int, got: int
+    component: Part, vector: int, inputs: dict[str, int], output: str, expected: int, got: int
 ) -> CheckError:
     inputs_widths, outputs_widths = port_widths(component)
     applied = ", ".join(f"{name} = {_literal(value, inputs_widths[name])}" for name, value in inputs.items())

@@ -33,6 +33,35 @@ def test_a_network_is_built_proved_and_verified(tmp_path: Path) -> None:
     assert verify_build(folder, silent)[0] == []
 
 
+@pytest.mark.slow
+def test_a_pipeline_is_built_proved_verified_and_changes_are_found(tmp_path: Path) -> None:
+    folder = tmp_path / "net"
+    built = compile_model(lut_network(2), folder, CompileOptions(input="Q2.4", stages=3), silent)
+    assert built.failure is None
+    report = json.loads((folder / "report.json").read_text())
+    assert (report["latency"], report["options"]["stages"], report["options"]["latency"]) == (3, 3, 3)
+    network = report["parts"]["network"]
+    assert network["ffs"] > 0
+    # Yosys counts the clock's buffer, 96 ps, and no wires.
+    assert network["delay_ps"] - 96 <= report["stage_ps"]
+    assert json.loads((folder / "manifest.json").read_text())["options"]["latency"] == 3
+    assert "Latency 3 cycles, and a new input in each" in (folder / "report.md").read_text()
+    assert 'data-key="latency"' in (folder / "report.html").read_text()
+    assert " i + 1" in (folder / "net_network_tb.v").read_text()
+    assert verify_build(folder, silent)[0] == []
+    design = json.loads((folder / "design.json").read_text())
+    design["pipeline"]["stages"]["network"]["encode"][""] += 1
+    (folder / "design.json").write_text(json.dumps(design))
+    assert any("the design is damaged" in problem for problem in verify_build(folder, silent)[0])
+
+
+def test_a_clock_that_cannot_be_met_writes_nothing(tmp_path: Path) -> None:
+    options = CompileOptions(input="Q2.4", clock=1000)
+    with pytest.raises(InputError, match="no number of stages meets the clock"):
+        compile_model(lut_network(2), tmp_path / "net", options, silent)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_words_of_a_model_can_be_narrowed() -> None:
     narrowed = with_input(lut_network(2), "UQ3.1")
     assert isinstance(narrowed, LutGroupModel)

@@ -77,3 +77,19 @@ def test_missing_imagery_is_asked_for(model: WisardModel) -> None:
         plan(model, "mine", CompileOptions(mode="domain"), silent)
     with pytest.raises(InputError, match="--edge-images"):
         plan(model, "mine", CompileOptions(edges="learned"), silent)
+
+
+def test_a_pipeline_has_the_stages_that_are_asked_for(model: WisardModel) -> None:
+    design = plan(model, "mine", CompileOptions(stages=2), silent).design
+    assert (design.circuit.latency, design.top.latency) == (0, 2)
+    assert design.header[2] == (
+        "A pipeline of latency 2 cycles that takes a new input in each; its outputs are registers."
+    )
+    assert plan(model, "mine", CompileOptions(clock=1), silent).design.top.latency == 1
+
+
+def test_stages_and_clock_exclude_each_other_and_a_clock_can_be_too_fast(model: WisardModel) -> None:
+    with pytest.raises(InputError, match="the number of stages and the clock decide the same"):
+        plan(model, "mine", CompileOptions(stages=2, clock=100), silent)
+    with pytest.raises(InputError, match="no number of stages meets the clock: 1000 MHz, 1000 ps"):
+        plan(model, "mine", CompileOptions(clock=1000), silent)

@@ -179,7 +179,9 @@ def test_vendor_cells_are_instances_that_stay() -> None:
 def test_registers_have_a_clock_start_values_and_no_reset() -> None:
     text = emitted(CIRCUITS["pipeline"])
     assert "// A pipeline. Latency 5 cycles.\nmodule my_pipeline (\n    input  wire clk,\n" in text
-    assert "    output reg  [3:0] q,\n    output wire [3:0] again,\n" in text
+    kept = '(* keep = "true", shreg_extract = "no" *) '
+    assert f"    {kept}output reg  [3:0] q,\n    output wire [3:0] again,\n" in text
+    assert len(re.findall(r"\breg\b", text)) == text.count(f"{kept}reg") + text.count(f"{kept}output reg")
     assert "    initial q = 4'h0;\n    always @(posedge clk) q <= " in text
     assert "    assign again = q;\n    assign low = q[0];\n" in text
     assert "my_stage first (.clk(clk), .a(held_a), .count(first_count));" in text
@@ -196,7 +198,9 @@ def test_the_same_component_gives_the_same_bytes(name: str, style: Style) -> Non
 def test_ports_stand_in_the_order_of_declaration(name: str) -> None:
     circuit = CIRCUITS[name]
     top = emitted(circuit).rpartition("\nmodule ")[2].partition(");")[0]
-    ports = re.findall(r"^    (?:input|output) \s*\w+\s+(?:\[\d+:0\] )?(\w+)", top, re.MULTILINE)
+    ports = re.findall(
+        r"^    (?:\(\*.*\*\) )?(?:input|output) \s*\w+\s+(?:\[\d+:0\] )?(\w+)", top, re.MULTILINE
+    )
     clock = ["clk"] if circuit.latency else []
     assert ports == [*clock, *(port.name for port in (*circuit.inputs, *circuit.outputs))]
 
@@ -205,7 +209,8 @@ def test_ports_stand_in_the_order_of_declaration(name: str) -> None:
 def test_no_name_is_a_word_of_an_hdl_or_of_c(name: str) -> None:
     text = emitted(CIRCUITS[name])
     modules = re.findall(r"^module (\w+)", text, re.MULTILINE)
-    nets = re.findall(r"^    (?:wire|reg|(?:in|out)put \s*\w+)\s+(?:\[\d+:0\] )?(\w+)", text, re.MULTILINE)
+    declared = r"^    (?:\(\*.*\*\) )?(?:wire|reg|(?:in|out)put \s*\w+)\s+(?:\[\d+:0\] )?(\w+)"
+    nets = re.findall(declared, text, re.MULTILINE)
     instances = re.findall(r"(\w+) \(\.", text)
     assert modules
     assert nets

@@ -1,0 +1,53 @@
+"""Pipelines by the number of their stages and by the clock."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.random_circuits import circuits
+from tests.wnn2hdl.schedule.conftest import chain
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.schedule import XC7, for_clock, for_stages
+
+COMBINATIONAL = ("table", "threshold", "sum", "match", "argmax", "instance")
+LEVEL = XC7.net + XC7.lut
+
+
+def test_stages_are_balanced() -> None:
+    assert [for_stages(chain(7), n).period for n in (1, 2, 3, 4, 7)] == [
+        XC7.register + levels * LEVEL for levels in (7, 4, 3, 2, 1)
+    ]
+
+
+def test_more_stages_than_levels_are_as_fast_as_one_level_is() -> None:
+    stages = for_stages(chain(2), 5)
+    assert (stages.latencies["chain"], stages.period) == (5, XC7.register + LEVEL)
+
+
+@pytest.mark.parametrize(("megahertz", "latency"), [(100, 1), (400, 4), (318, 3), (800, 7)])
+def test_a_clock_takes_as_few_stages_as_it_allows(megahertz: float, latency: int) -> None:
+    stages = for_clock(chain(7), megahertz)
+    assert stages.latencies["chain"] == latency
+    assert stages.period <= 1e6 / megahertz
+    if latency > 1:
+        assert for_stages(chain(7), latency - 1).period > 1e6 / megahertz
+
+
+def test_a_clock_that_is_too_fast_for_one_lut_is_refused() -> None:
+    with pytest.raises(InputError) as error:
+        for_clock(chain(3), 900)
+    assert error.value.line() == (
+        "no number of stages meets the clock: 900 MHz, 1111 ps; "
+        "a stage takes at least 1245 ps, so give at most --clock 803"
+    )
+    assert for_clock(chain(3), 803).latencies["chain"] == 3
+
+
+@settings(max_examples=25, deadline=None)
+@given(circuits(COMBINATIONAL), st.integers(1, 4))
+def test_the_clock_that_some_stages_allow_is_met_by_no_more(circuit: Circuit, stages: int) -> None:
+    period = for_stages(circuit, stages).period
+    found = for_clock(circuit, 1e6 / period - 1e-3)
+    assert found.latencies[circuit.name] <= stages
+    assert found.period <= period

@@ -1,0 +1,58 @@
+"""Choosing the stages of a pipeline: by their number, or by the clock."""
+
+from bisect import bisect_left
+from collections.abc import Callable
+
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.schedule.delays import XC7, Delays
+from wnn2hdl.schedule.solve import Program
+from wnn2hdl.schedule.stages import Stages
+from wnn2hdl.schedule.timing import Paths
+
+MAX_STAGES = 64
+"""The most stages that can be asked for."""
+
+
+def for_stages(circuit: Circuit, stages: int, delays: Delays = XC7) -> Stages:
+    """The fastest pipeline of so many stages, and of these the one whose registers have the fewest bits.
+
+    A new input enters in every cycle, and each stage ends in registers, the last one too.
+
+    Args:
+        circuit: its tables are mapped to LUTs.
+        stages: its latency in cycles, at least 1.
+        delays: the delay model.
+    """
+    paths = Paths(circuit, delays)
+    program = Program(paths)
+    latency = program.least_latency
+    period = _first(
+        paths.periods(), lambda period: (least := latency(period)) is not None and least <= stages
+    )
+    return program.fewest_registers(period, stages)
+
+
+def for_clock(circuit: Circuit, megahertz: float, delays: Delays = XC7) -> Stages:
+    """The pipeline of the fewest stages that a clock allows; see `for_stages`.
+
+    Raises:
+        InputError: one cell alone takes longer than a cycle.
+    """
+    paths = Paths(circuit, delays)
+    program = Program(paths)
+    period = int(1e6 / megahertz)
+    latency = program.least_latency(period)
+    if latency is None:
+        shortest = _first(paths.periods(), lambda period: program.least_latency(period) is not None)
+        raise InputError(
+            "no number of stages meets the clock",
+            value=f"{megahertz:g} MHz, {period} ps",
+            hint=f"a stage takes at least {shortest} ps, so give at most --clock {1_000_000 // shortest}",
+        )
+    return program.fewest_registers(period, latency)
+
+
+def _first(periods: list[int], does: Callable[[int], bool]) -> int:
+    """The first period that does; all later ones do, too, and the last one does."""
+    return periods[bisect_left(periods, True, hi=len(periods) - 1, key=does)]
