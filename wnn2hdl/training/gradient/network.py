@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import wnn2hdl
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel
@@ -164,4 +165,9 @@ def _identity(
     """All that decides a training."""
     digest = hashlib.sha256(features.tobytes() + labels.tobytes()).hexdigest()
     shape = asdict(architecture) | {"words": str(architecture.words)}
-    return {"samples": digest, "architecture": shape, "recipe": asdict(recipe)}
+    return {
+        "samples": digest,
+        "architecture": shape,
+        "recipe": asdict(recipe),
+        "version": wnn2hdl.__version__,
+    }
