@@ -56,7 +56,7 @@ from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
-from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
+from wnn2hdl.training.budget import LIGHT, Point, measure, pareto_front, train_under_budget
 from wnn2hdl.training.discriminators import LEFT_OUT, train, with_colours
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 from wnn2hdl.training.tables import TableOptions
@@ -307,6 +307,12 @@ def _sentence(summary: dict[str, Any]) -> str:
         f"{summary['address_bits']} address bits over {','.join(summary['bits'])}",
         f"bleaching threshold {summary['bleaching']}, trained on {summary['images']} images; "
         f"RAMs {saturation['mean']:.0%} set, {saturation['highest']:.0%} at most",
+    ]
+    lines += [
+        f"light x{exposure}: {figures['accuracy']:.2%} of the pixels of unseen images, "
+        f"{figures['worst_image']:.2%} of the worst one's; expect {figures['other_images'][0]:.2%} "
+        f"to {figures['other_images'][1]:.2%} of as many others"
+        for exposure, figures in summary["training"].get(LIGHT, {}).items()
     ]
     left_out = summary["training"][LEFT_OUT]
     if left_out["pixels"]:

@@ -23,7 +23,7 @@ MAX_WEIGHT = 99
 MAX_OFFSET = 99_999
 """The largest offset, of either sign."""
 
-_TERM = r"(?:[1-9]\d?)?[RGB](?:\[7:[0-7]\])?"
+_TERM = r"(?:[1-9]\d?)?[RGB](?:\[[0-7]:[0-7]\])?"
 _SIDE = rf"{_TERM}(?:\+{_TERM})*"
 _PATTERN = re.compile(
     rf"(?P<left>{_SIDE})>=(?:(?P<right>{_SIDE})(?P<offset>[+-]\d{{1,5}})?|(?P<alone>-?\d{{1,5}}))"
@@ -37,18 +37,20 @@ class Weighted:
     Attributes:
         channel: of `CHANNELS`.
         weight: 1 to `MAX_WEIGHT`.
-        low: the lowest bit of the channel that is read, 0 to 7; the number is that of bits 7 to ``low``: the
-            channel's level divided by ``2**low`` and rounded down.
+        low: the lowest bit of the channel that is read.
+        high: the highest; bits ``high`` to ``low`` are the number. Without the bits above, a level of
+            ``2**(high + 1)`` counts as 0: what reads the comparison has to read those bits, too.
     """
 
     channel: str
     weight: int = 1
     low: int = 0
+    high: int = CHANNEL_BITS - 1
 
     def __str__(self) -> str:
         return (
             f"{self.weight if self.weight > 1 else ''}{self.channel}"
-            f"{f'[{CHANNEL_BITS - 1}:{self.low}]' if self.low else ''}"
+            f"{f'[{self.high}:{self.low}]' if (self.high, self.low) != (CHANNEL_BITS - 1, 0) else ''}"
         )
 
     @classmethod
@@ -57,18 +59,19 @@ class Weighted:
         digits = re.match(r"\d*", text)
         assert digits is not None
         channel = text[digits.end()]
-        low = int(text[-2]) if text.endswith("]") else 0
-        return cls(channel, int(digits.group() or 1), low)
+        high, low = (int(text[-4]), int(text[-2])) if text.endswith("]") else (CHANNEL_BITS - 1, 0)
+        return cls(channel, int(digits.group() or 1), low, high)
 
     @property
     def bits(self) -> tuple[str, ...]:
         """The pixel bits that are read, the least significant first."""
-        return tuple(f"{self.channel}{bit}" for bit in range(self.low, CHANNEL_BITS))
+        return tuple(f"{self.channel}{bit}" for bit in range(self.low, self.high + 1))
 
     @cached_property
     def levels(self) -> NDArray[np.int64]:
         """The value for each level of the channel: int64 ``[256]``."""
-        return self.weight * (np.arange(1 << CHANNEL_BITS) >> self.low)
+        whole = np.arange(1 << CHANNEL_BITS)
+        return self.weight * ((whole & (2 << self.high) - 1) >> self.low)
 
 
 @dataclass(frozen=True)
@@ -92,8 +95,8 @@ class Comparison:
         if not self.left or len({term.channel for term in terms}) != len(terms):
             raise ValueError(f"{self} needs a channel on its left, and each channel once at most")
         for term in terms:
-            if not (1 <= term.weight <= MAX_WEIGHT and 0 <= term.low < CHANNEL_BITS):
-                raise ValueError(f"{term} has a weight beyond {MAX_WEIGHT} or reads no bit")
+            if not (1 <= term.weight <= MAX_WEIGHT and 0 <= term.low <= term.high < CHANNEL_BITS):
+                raise ValueError(f"{term} has a weight beyond {MAX_WEIGHT}, or reads no bits")
         if abs(self.offset) > MAX_OFFSET:
             raise ValueError(f"the offset of {self} is beyond {MAX_OFFSET}")
         if len(self.bits) > MAX_TABLE_INPUTS:
@@ -131,11 +134,15 @@ class Comparison:
 
     def evaluate(self, pixels: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """The answer for pixels of shape ``S + (3,)``: bool ``S``."""
+        return self.slack(pixels) >= 0
+
+    def slack(self, pixels: NDArray[np.uint8]) -> NDArray[np.int64]:
+        """By how much the left exceeds the right, for pixels of shape ``S + (3,)``: int64 ``S``."""
         slack = np.full(pixels.shape[:-1], -self.offset, dtype=np.int64)
         for terms, sign in (self.left, 1), (self.right, -1):
             for term in terms:
                 slack += np.take(sign * term.levels, pixels[..., CHANNELS.index(term.channel)])
-        return slack >= 0
+        return slack
 
     def table(self) -> NDArray[np.bool_]:
         """The answer for every code of `bits`: bool ``[2**len(bits)]``."""
@@ -216,7 +223,7 @@ def signal_name(name: str) -> str:
     """The name of a code bit as an identifier: ``is_3R_7_1_ge_2B_plus_4`` for ``3R[7:1]>=2B+4``."""
     if ">=" not in name:
         return name
-    words = {">=": "_ge_", "+": "_plus_", "-": "_minus_", "[7:": "_7_", "]": ""}
+    words = {">=": "_ge_", "+": "_plus_", "-": "_minus_", "[": "_", ":": "_", "]": ""}
     for sign, word in words.items():
         name = name.replace(sign, word)
     return f"is_{name.replace('__', '_')}"

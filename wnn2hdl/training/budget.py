@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,15 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import ColourHistogram, Dataset, colour_histogram
 from wnn2hdl.encode import high_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, LutNetwork, WisardModel, bits_to_codes, spread_codes
+from wnn2hdl.ir import BitSelect, LutNetwork, TruthTable, WisardModel, bits_to_codes, spread_codes
+from wnn2hdl.ir.care import Everything
+from wnn2hdl.lower import deforestation
 from wnn2hdl.lower.table import care_set, pixel_table
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import MOST_LUTS, look_up_table, select_bits
-from wnn2hdl.training.crossval import Trainer, cross_validate
+from wnn2hdl.training.comparisons import select_comparisons
+from wnn2hdl.training.crossval import EXPOSURES, Trainer, cross_validate, cross_validated
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
 ADDRESS_BITS = 4
@@ -27,6 +31,14 @@ FINALISTS = 3
 """The most accurate random mappings, whose circuits are made."""
 
 SATURATION = 0.9
+
+WITHIN = (7,)
+"""LUTs per pixel that comparisons are looked for within; more than that gained nothing on unseen images."""
+
+LIGHT = "in_light"
+"""Key in `WisardModel.training` of how accurate the classifier was in cross-validation, by exposure."""
+
+RESAMPLES = 2000
 
 CARE_SHARES = (0.0, 1e-5, 1e-4, 1e-3)
 """Share of the training pixels that a code must make up to be cared for; 0 for every code that occurs."""
@@ -41,12 +53,20 @@ class Point:
         accuracy: share of the pixels right in cross-validation by image, 0 to 1.
         method: how it was trained.
         model: the same trained on all images.
+        light: the same share for each image and each of `EXPOSURES`, float64 ``[images, exposures]``; None
+            if it is not known.
     """
 
     luts: int
     accuracy: float
     method: str
     model: WisardModel
+    light: NDArray[np.float64] | None = None
+
+    @property
+    def steady(self) -> float:
+        """Mean share right over images and light."""
+        return self.accuracy if self.light is None else float(self.light.mean())
 
 
 def train_under_budget(
@@ -54,7 +74,8 @@ def train_under_budget(
 ) -> WisardModel:
     """The most accurate classifier whose exact circuit takes at most ``luts_per_pixel`` LUTs per pixel.
 
-    Among equally accurate ones it is the one with the fewest LUTs; it is trained on all images.
+    It is the most accurate one on the mean over `EXPOSURES`, that is, in more and in less light. Among those
+    that are equally accurate it is the one with the fewest LUTs; it is trained on all images.
 
     Args:
         dataset: at least two images.
@@ -78,8 +99,13 @@ def train_under_budget(
             value=f"{len(points)} candidates",
             hint="allow more, or try more mappings",
         )
-    best = max(fitting, key=lambda point: (point.accuracy, -point.luts))
-    figures = {"luts": best.luts, "cross_validated_accuracy": best.accuracy, "images": list(dataset.names)}
+    best = max(fitting, key=lambda point: (point.steady, -point.luts))
+    figures = {
+        "luts": best.luts,
+        "cross_validated_accuracy": best.accuracy,
+        LIGHT: light_figures(best, seed),
+        "images": list(dataset.names),
+    }
     return replace(best.model, training={**best.model.training, **figures})
 
 
@@ -88,7 +114,8 @@ def measure(
 ) -> tuple[Point, ...]:
     """All candidates with their costs and accuracies, for `pareto_front` and the plot.
 
-    Candidates are bit selection at 1, 2 and 3 LUTs (for two classes), and of the `trials` random mappings of
+    Candidates are bit selection at 1, 2 and 3 LUTs and comparisons of channels within each of `WITHIN` (for
+    two classes), and of the `trials` random mappings of
     the discriminators that do not saturate the `FINALISTS` most accurate: as exact circuits, and as circuits
     that are free outside of a care set taken from the training images. What such a circuit answers outside is
     part of the candidate, in cross-validation too: it becomes a plain look-up table.
@@ -108,14 +135,51 @@ def measure(
         for image in reported(dataset, "reading images", len(dataset), progress)
     ]
     methods = [*_bit_selections(images, dataset.classes, seed, luts_per_pixel)]
+    methods += _comparisons(images, dataset.classes, seed, luts_per_pixel)
     methods += _discriminators(images, dataset.classes, trials, seed, progress)
     points = []
     for name, train in reported(methods, "measuring candidates", len(methods), progress):
-        accuracy = cross_validate(images, train)
+        right = cross_validated(images, train, EXPOSURES)
+        pixels = np.array([image.counts.sum() for image in images])
+        accuracy = float(right[:, EXPOSURES.index(1.0)].sum() / pixels.sum())
         model = train(range(len(images)))
-        network = map_luts(pixel_table(model)).network
-        points.append(Point(len(network.luts), accuracy, name, model))
+        points.append(Point(pixel_luts(model), accuracy, name, model, right / pixels[:, np.newaxis]))
     return tuple(points)
+
+
+def pixel_luts(model: WisardModel) -> int:
+    """LUTs of a pixel model's exact circuit, its comparisons included."""
+    circuit = deforestation.pixel(model, Everything(model.encoder.width))
+    tables = circuit.tables().values()
+    return sum(
+        len(map_luts(table.function).network.luts)
+        for table in tables
+        if isinstance(table.function, TruthTable)
+    )
+
+
+def light_figures(point: Point, seed: int) -> dict[str, dict[str, Any]]:
+    """How accurate a classifier was on images that it had not seen, for each of `EXPOSURES`.
+
+    Returns:
+        For each exposure the mean over images, the lowest of an image, and an interval that holds the mean of
+        as many other images with the probability 0.95: images are drawn again twice, for the doubt about
+        these images and for the choice of the others.
+    """
+    assert point.light is not None
+    count = len(point.light)
+    rng = np.random.default_rng(seed)
+    drawn = rng.integers(count, size=(RESAMPLES, count))
+    again = np.take_along_axis(drawn, rng.integers(count, size=drawn.shape), axis=1)
+    figures = {}
+    for exposure, shares in zip(EXPOSURES, point.light.T, strict=True):
+        low, high = np.percentile(shares[again].mean(axis=1), (2.5, 97.5))
+        figures[f"{exposure:g}"] = {
+            "accuracy": float(shares.mean()),
+            "other_images": [float(low), float(high)],
+            "worst_image": float(shares.min()),
+        }
+    return figures
 
 
 def pareto_front(points: Iterable[Point]) -> tuple[Point, ...]:
@@ -138,6 +202,20 @@ def _bit_selections(
             return select_bits([images[i] for i in chosen], classes, luts=luts, seed=seed)
 
         yield f"bit selection, {luts} LUT", train
+
+
+def _comparisons(
+    images: Sequence[ColourHistogram], classes: tuple[str, ...], seed: int, luts_per_pixel: int | None
+) -> Iterator[tuple[str, Trainer]]:
+    if len(classes) != 2:
+        return
+    for luts in WITHIN:
+
+        def train(chosen: Sequence[int], luts: int = luts) -> WisardModel:
+            return select_comparisons([images[i] for i in chosen], classes, luts=luts, seed=seed)
+
+        if luts_per_pixel is None or luts <= luts_per_pixel:
+            yield f"comparisons, {luts} LUTs at most", train
 
 
 def _discriminators(

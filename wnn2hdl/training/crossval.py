@@ -3,10 +3,12 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wnn2hdl.dataset import ColourHistogram
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, WisardModel
+from wnn2hdl.images import exposed
+from wnn2hdl.ir import WisardModel, pixel_encoder
 
 FOLDS = 5
 
@@ -14,8 +16,23 @@ Trainer = Callable[[Sequence[int]], WisardModel]
 """Trains a pixel model on the images with these positions."""
 
 
+EXPOSURES = (0.8, 1.0, 1.25, 1.5)
+"""The light under which classifiers are compared, as a factor of that in which the images were taken."""
+
+
 def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
     """Share of all pixels that are right when each image is classified by a model that has not seen it.
+
+    See `cross_validated` for the folds and what is raised.
+    """
+    right = cross_validated(images, train, (1.0,)).sum()
+    return float(right / sum(int(image.counts.sum()) for image in images))
+
+
+def cross_validated(
+    images: Sequence[ColourHistogram], train: Trainer, exposures: Sequence[float]
+) -> NDArray[np.int64]:
+    """Pixels that are right when each image is classified, in each light, by a model that has not seen it.
 
     Image ``i`` is tested in fold ``i % 5``, as `wnn2hdl.dataset.folds` splits sorted names; fewer images
     than that are left out one by one.
@@ -23,6 +40,10 @@ def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
     Args:
         images: the colours of each image.
         train: called once per fold.
+        exposures: the light, as a factor.
+
+    Returns:
+        int64 ``[images, exposures]``.
 
     Raises:
         InputError: fewer than two images.
@@ -30,15 +51,16 @@ def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
     if len(images) < 2:
         raise InputError("cross-validation by image needs two images", value=len(images), hint="give more")
     folds = min(FOLDS, len(images))
-    right = 0
+    right = np.zeros((len(images), len(exposures)), dtype=np.int64)
     for fold in range(folds):
         model = train([i for i in range(len(images)) if i % folds != fold])
-        right += sum(pixels_right(model, image) for image in images[fold::folds])
-    return right / sum(int(image.counts.sum()) for image in images)
+        for i in range(fold, len(images), folds):
+            right[i] = [pixels_right(model, images[i], exposure) for exposure in exposures]
+    return right
 
 
-def pixels_right(model: WisardModel, image: ColourHistogram) -> int:
-    """How many pixels of an image a model puts into their class."""
-    assert isinstance(model.encoder, BitSelect)
-    answers = model.evaluate_all_codes()[model.encoder.codes(image.pixels)]
+def pixels_right(model: WisardModel, image: ColourHistogram, exposure: float = 1.0) -> int:
+    """How many pixels of an image, under more or less light, a model puts into their class."""
+    codes = pixel_encoder(model).codes(exposed(image.pixels, exposure))
+    answers = model.evaluate_all_codes()[codes]
     return int(image.counts[answers, np.arange(len(answers))].sum())

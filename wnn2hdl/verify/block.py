@@ -241,7 +241,7 @@ def _code(encoder: PixelEncoder, pixel: str) -> tuple[list[str], list[str]]:
         sides = []
         for terms, offset in (comparison.left, -comparison.offset), (comparison.right, comparison.offset):
             channels = [
-                f"32'd{term.weight} * {pixel}[{PIXEL_BIT_NAMES[f'{term.channel}7']}:"
+                f"32'd{term.weight} * {pixel}[{PIXEL_BIT_NAMES[f'{term.channel}{term.high}']}:"
                 f"{PIXEL_BIT_NAMES[f'{term.channel}{term.low}']}]"
                 for term in terms
             ]

@@ -13,12 +13,14 @@ from wnn2hdl.ir.pixels import pixels_of_codes
 from wnn2hdl.ir.relational import Weighted, examples, occurring, signal_name
 from wnn2hdl.ir.verilog_text import check_identifier
 
+slices = st.sampled_from([(low, high) for high in range(8) for low in range(max(0, high - 5), high + 1)])
+
 
 @st.composite
 def comparisons(draw: st.DrawFn) -> Comparison:
     channels = draw(st.permutations("RGB"))
     count = draw(st.integers(1, 3))
-    terms = [Weighted(channel, draw(st.integers(1, 99)), draw(st.integers(2, 7))) for channel in channels]
+    terms = [Weighted(channel, draw(st.integers(1, 99)), *draw(slices)) for channel in channels]
     left = draw(st.integers(1, count))
     return Comparison(tuple(terms[:left]), tuple(terms[left:count]), draw(st.integers(-999, 999)))
 
@@ -40,7 +42,7 @@ def test_sums_of_channels_are_compared_as_plain_numbers(
     for pixel, answer in zip(values, answers.tolist(), strict=True):
         level = dict(zip("RGB", pixel, strict=True))
         left, right = (
-            sum(term.weight * (level[term.channel] >> term.low) for term in side)
+            sum(term.weight * (level[term.channel] % 2 ** (term.high + 1) >> term.low) for term in side)
             for side in (comparison.left, comparison.right)
         )
         assert answer == (left >= right + comparison.offset)
@@ -70,6 +72,7 @@ def test_a_table_has_a_code_of_the_bits_that_are_read() -> None:
         ("3R>=R", "each channel once"),
         ("1R>=B", "is written R>=B"),
         ("R[7:0]>=B", "is written R>=B"),
+        ("R[2:5]>=B", "reads no bits"),
         ("R>=B+0", "is written R>=B"),
         ("R+G>=B", "24 bits; a table reads 20"),
     ],

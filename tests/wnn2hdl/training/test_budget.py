@@ -10,6 +10,7 @@ from wnn2hdl.training.bitselect import look_up_table
 from wnn2hdl.training.budget import (
     Point,
     circuit_model,
+    light_figures,
     measure,
     pareto_front,
     saturates,
@@ -53,8 +54,20 @@ def test_front_holds_the_points_that_no_cheaper_one_equals() -> None:
 
 def test_candidates_are_bit_selections_discriminators_and_their_circuits(points: tuple[Point, ...]) -> None:
     kinds = {point.method.split(",")[0] for point in points}
-    assert kinds >= {"bit selection", "WiSARD"}
+    assert kinds >= {"bit selection", "comparisons", "WiSARD"}
     assert any("codes of" in point.method for point in points)
+
+
+def test_light_decides_between_classifiers_that_are_as_good_without_it() -> None:
+    light = np.array([[0.9, 0.9, 0.5, 0.5], [0.7, 0.9, 0.9, 0.9]])
+    point = Point(1, 0.9, "", TABLE, light)
+    assert point.steady == pytest.approx(light.mean())
+    figures = light_figures(point, seed=0)
+    assert list(figures) == ["0.8", "1", "1.25", "1.5"]
+    assert figures["0.8"]["accuracy"] == pytest.approx(0.8)
+    assert figures["1.25"]["worst_image"] == 0.5
+    assert figures["1.25"]["other_images"] == [0.5, 0.9]
+    assert figures["1"]["other_images"] == pytest.approx([0.9, 0.9])
 
 
 def test_cost_is_that_of_the_models_exact_circuit(points: tuple[Point, ...]) -> None:

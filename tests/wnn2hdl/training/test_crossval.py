@@ -7,7 +7,7 @@ from wnn2hdl.dataset import ColourHistogram
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import BitSelect, WisardModel
 from wnn2hdl.training.bitselect import look_up_table
-from wnn2hdl.training.crossval import cross_validate, pixels_right
+from wnn2hdl.training.crossval import cross_validate, cross_validated, pixels_right
 
 ENCODER = BitSelect(("R7",))
 
@@ -49,3 +49,12 @@ def test_accuracy_is_the_share_of_all_pixels() -> None:
 def test_one_image_cannot_be_cross_validated() -> None:
     with pytest.raises(InputError, match="needs two images: 1; give more"):
         cross_validate([image((1, 0), (0, 1))], lambda chosen: constant(0))
+
+
+def test_other_light_moves_pixels_into_other_codes() -> None:
+    model = look_up_table(BitSelect(("R7",)), ("dark", "bright"), np.array([0, 1]), {})
+    picture = ColourHistogram(np.array([0x500000, 0x900000], dtype=np.uint32), np.array([[5, 0], [0, 7]]))
+    found = [pixels_right(model, picture, exposure) for exposure in (0.5, 1.0, 1.7)]
+    assert found == [5, 12, 7]
+    right = cross_validated([picture, picture], lambda chosen: model, (0.5, 1.0, 1.7))
+    assert right.tolist() == [found, found]

@@ -34,12 +34,12 @@ def test_the_block_is_pixels_then_edge_filter_and_match_count(circuits: ModuleTy
         assert counts[sample] == 9 - (int(bits[sample]) ^ sample).bit_count()
 
 
-RELATIONAL = Relational(("3R>=2B[7:1]-7", "G7", "R+9B[7:3]>=140"))
+RELATIONAL = Relational(("3R>=2B[7:1]-7", "G7", "R+9B[6:3]>=140"))
 ANSWERS = np.array([0, 1, 1, 0, 0, 0, 1, 1])
 
 BY_HAND = """
 module pixel(input [23:0] rgb, output class_bits);
-  wire signed [12:0] red = {5'd0, rgb[23:16]}, blue = {6'd0, rgb[7:1]}, high = {8'd0, rgb[7:3]};
+  wire signed [12:0] red = {5'd0, rgb[23:16]}, blue = {6'd0, rgb[7:1]}, high = {9'd0, rgb[6:3]};
   wire ratio = red + red + red - blue - blue + 13'sd7 >= 13'sd0;
   wire bright = red + high * 13'sd9 > 13'sd139;
   assign class_bits = bright ? rgb[15] : ratio ^ rgb[15];
