@@ -166,7 +166,7 @@ def _threshold(scope: _Scope, node: Threshold) -> None:
 
 
 def _sum(scope: _Scope, node: Sum) -> None:
-    _draw(scope, node.name, sum_network(node.weights, node.offset), scope.bits(node.word))
+    _draw(scope, node.name, sum_network(node.weights, node.offset, node.width), scope.bits(node.word))
 
 
 def _match(scope: _Scope, node: Match) -> None:

@@ -65,8 +65,9 @@ def _node_to_json(node: Node) -> dict[str, Any]:
             return data | {"word": word_to_json(word), form: function.to_json()}
         case Threshold(word=word, at_least=at_least):
             return data | {"word": word_to_json(word), "at_least": at_least}
-        case Sum(word=word, weights=weights, offset=offset):
-            return data | {"word": word_to_json(word), "weights": list(weights), "offset": offset}
+        case Sum(word=word, weights=weights, offset=offset, modulus_bits=bits):
+            added = {"weights": list(weights), "offset": offset, "modulus_bits": bits}
+            return data | {"word": word_to_json(word)} | added
         case Match(word=word, other=other):
             return data | {"word": word_to_json(word), "other": word_to_json(other)}
         case ArgMax(words=words, tie=tie):
@@ -88,7 +89,11 @@ _READERS: Mapping[str, Callable[[Mapping[str, Any]], Node]] = {
     Table.kind: _table,
     Threshold.kind: lambda x: Threshold(x["name"], word_from_json(x["word"]), int(x["at_least"])),
     Sum.kind: lambda x: Sum(
-        x["name"], word_from_json(x["word"]), tuple(map(int, x["weights"])), int(x["offset"])
+        x["name"],
+        word_from_json(x["word"]),
+        tuple(map(int, x["weights"])),
+        int(x["offset"]),
+        None if x["modulus_bits"] is None else int(x["modulus_bits"]),
     ),
     Match.kind: lambda x: Match(x["name"], word_from_json(x["word"]), word_from_json(x["other"])),
     ArgMax.kind: lambda x: ArgMax(x["name"], tuple(map(word_from_json, x["words"])), x["tie"]),

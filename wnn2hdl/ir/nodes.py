@@ -111,10 +111,12 @@ class Sum:
     """The number of set bits of a word, or the sum of the weights of its set bits, and a constant.
 
     Attributes:
-        name: of the node and of the net it drives, as many bits as the largest sum needs.
+        name: of the node and of the net it drives.
         word: the bits that are added, at least one.
-        weights: of each bit, at least 1; all of them 1 if left out.
-        offset: is added to every sum, at least 0.
+        weights: of each bit, not 0; all of them 1 if left out.
+        offset: is added to every sum.
+        modulus_bits: if given, sums are taken modulo ``2**modulus_bits``, and have that many bits; if left
+            out, they have as many bits as the largest needs, and none may be negative.
     """
 
     kind: ClassVar[str] = "sum"
@@ -122,15 +124,30 @@ class Sum:
     word: Word
     weights: tuple[int, ...] = field(default=())
     offset: int = 0
+    modulus_bits: int | None = None
 
     def __post_init__(self) -> None:
         if not self.weights:
             object.__setattr__(self, "weights", (1,) * width_of(self.word))
-        fits = self.word and len(self.weights) == width_of(self.word) and min(self.weights) >= 1
-        if not fits or (sum(self.weights) + self.offset).bit_length() > MAX_NUMBER:
+        lowest, highest = self._range
+        fits = self.word and len(self.weights) == width_of(self.word) and all(self.weights)
+        if not fits or max(highest, -lowest).bit_length() > MAX_NUMBER:
             raise ValueError(f"{self.name} adds {width_of(self.word)} bits with the weights {self.weights}")
-        if self.offset < 0:
-            raise ValueError(f"{self.name} adds the constant {self.offset}")
+        if self.modulus_bits is None and lowest < 0:
+            raise ValueError(f"{self.name} adds the constant {self.offset}, so that sums may be negative")
+        if self.modulus_bits is not None and not 1 <= self.modulus_bits <= MAX_NUMBER:
+            raise ValueError(f"{self.name} adds modulo 2**{self.modulus_bits}")
+
+    @property
+    def _range(self) -> tuple[int, int]:
+        """The lowest and the highest sum."""
+        negative = sum(weight for weight in self.weights if weight < 0)
+        return self.offset + negative, self.offset + sum(self.weights) - negative
+
+    @property
+    def width(self) -> int:
+        """Bits of the sum."""
+        return self._range[1].bit_length() if self.modulus_bits is None else self.modulus_bits
 
     @property
     def reads(self) -> tuple[Word, ...]:
@@ -140,7 +157,7 @@ class Sum:
     @property
     def drives(self) -> Mapping[str, int]:
         """See `Table.drives`."""
-        return {self.name: (sum(self.weights) + self.offset).bit_length()}
+        return {self.name: self.width}
 
     @property
     def latency(self) -> int:
@@ -150,7 +167,7 @@ class Sum:
     def evaluate(self, values: tuple[Bits, ...]) -> dict[str, Bits]:
         """See `Table.evaluate`."""
         total = values[0] @ np.array(self.weights, dtype=np.int64) + self.offset
-        return {self.name: codes_to_bits(total, self.drives[self.name])}
+        return {self.name: codes_to_bits(total & (1 << self.width) - 1, self.width)}
 
 
 @dataclass(frozen=True)

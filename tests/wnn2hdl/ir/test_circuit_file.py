@@ -35,6 +35,7 @@ def every_kind() -> Circuit:
     nodes = (
         Instance("inner_one", inner, {"a": B.word}),
         Sum("ones", A.word, (1, 2, 3)),
+        Sum("less", A.word, (1, -2, 3), 1, 3),
         Match("same", A.word, B.word),
         Threshold("high", A.word, 4),
         ArgMax("best", (A.word, B.word), "last"),

@@ -46,6 +46,8 @@ def test_a_sum_counts_set_bits_or_adds_their_weights() -> None:
     assert (node.reads, node.drives, node.latency, node.weights) == ((A,), {"s": 2}, 0, (1, 1, 1))
     assert value(node, WORDS) == [0, 1, 1, 2, 1, 2, 2, 3]
     assert value(Sum("s", A, (5, 1, 2)), WORDS) == [0, 5, 1, 6, 2, 7, 3, 8]
+    assert value(Sum("s", A, (-5, 1, 2), 5), WORDS) == [5, 0, 6, 1, 7, 2, 8, 3]
+    assert value(Sum("s", A, (-5, 1, 2), modulus_bits=2), WORDS) == [0, 3, 1, 0, 2, 1, 3, 2]
 
 
 def test_a_match_counts_equal_places() -> None:
@@ -75,6 +77,8 @@ def test_a_register_keeps_values_and_takes_cycles() -> None:
         (lambda: Table("t", A, TruthTable.exact(("x",), ("y",), WORDS[:2, :1])), "t reads 3 bits for"),
         (lambda: Sum("s", A, (1, 2)), "s adds 3 bits with the weights"),
         (lambda: Sum("s", A, (1, 2, 0)), "s adds 3 bits with the weights"),
+        (lambda: Sum("s", A, (1, 2, -3), 2), "s adds the constant 2, so that sums may be negative"),
+        (lambda: Sum("s", A, modulus_bits=64), r"s adds modulo 2\*\*64"),
         (lambda: Match("m", A, C), "m compares 3 with 2 bits"),
         (lambda: ArgMax("w", (A,)), "w cannot choose among 1 words"),
         (lambda: ArgMax("w", (A, B), "any"), "ties: any"),  # type: ignore[arg-type]
