@@ -63,7 +63,7 @@ def match_network(width: int) -> LutNetwork:
         for power in range((len(pins) // 2).bit_length()):
             counted.append(builder.add(pins, lambda *values, power=power: _matches(values) >> power & 1))
             weights.append(1 << power)
-    total = sum_network(tuple(weights))
+    total = sum_network(tuple(weights), 0, sum(weights).bit_length())
     signals = dict(zip(total.inputs, counted, strict=True)) | {
         cell.name: f"add_{cell.name}" for cell in total.cells
     }

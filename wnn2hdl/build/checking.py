@@ -15,7 +15,7 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.equivalence import Circuit
-from wnn2hdl.verify.proof import Proof, prove, prove_netlists, sides
+from wnn2hdl.verify.proof import Proof, method, prove, prove_netlists, sides
 
 _MANY = 1 << 16
 """Vectors above which a circuit is simulated in its own process."""
@@ -31,6 +31,7 @@ class Checked:
         vectors: how many vectors each part was simulated on.
         simulated_before: parts whose simulation passed before, on the same vectors.
         proved_before: parts of which the same Verilog and the same netlist were proved before.
+        method: what proved it.
         seconds: when each of the checks and syntheses, which run side by side, was done.
         failure: why the circuit is not the model; None if it is.
     """
@@ -40,6 +41,7 @@ class Checked:
     vectors: Mapping[str, int]
     simulated_before: tuple[str, ...]
     proved_before: tuple[str, ...]
+    method: str
     seconds: Mapping[str, float]
     failure: str | None
 
@@ -108,6 +110,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         vectors,
         tuple(simulations.passed),
         tuple(part for part in emitted if part not in {*verilog.due, *netlists.due}),
+        method(specification),
         seconds,
         next((text for text in failures if text), None),
     )

@@ -34,7 +34,6 @@ from wnn2hdl.report import (
     report_markdown,
 )
 from wnn2hdl.synth import OPTIONS, XC7Z020, shares
-from wnn2hdl.verify.proof import METHOD
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +153,11 @@ def _report(
             for part, cover in planned.covers.items()
         },
         proof=Proof(
-            checked.status, METHOD, checked.proof_seconds, checked.failure, before=checked.proved_before
+            checked.status,
+            checked.method,
+            checked.proof_seconds,
+            checked.failure,
+            before=checked.proved_before,
         ),
         care=_care(design, measured.coverage),
         edges=edges,

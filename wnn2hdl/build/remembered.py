@@ -19,7 +19,6 @@ from wnn2hdl.ir.circuit_file import circuit_to_json
 from wnn2hdl.synth import cache
 from wnn2hdl.tools import abc_version, find_yosys
 from wnn2hdl.verify.equivalence import Circuit as Module
-from wnn2hdl.verify.proof import METHOD
 from wnn2hdl.verify.specification import Samples
 
 Key = Mapping[str, str]
@@ -60,7 +59,6 @@ def proof_key(left: Module, right: Module) -> Key:
         "check": "proof",
         "left": _module_digest(left),
         "right": _module_digest(right),
-        "method": METHOD,
         "Yosys": f"{yosys.name} {yosys.version}",
         "ABC": abc_version(),
         "code": code_digest(),

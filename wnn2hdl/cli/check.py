@@ -18,7 +18,6 @@ from wnn2hdl.errors import CheckError
 from wnn2hdl.files import make_folder
 from wnn2hdl.images import write_png
 from wnn2hdl.raster import Reading
-from wnn2hdl.verify.proof import METHOD
 
 build_argument = click.argument("build", type=folder)
 
@@ -42,7 +41,7 @@ def verify_command(build: Path, as_json: bool) -> None:
         "problems": problems,
         "proof": None
         if checked is None
-        else {"status": checked.status, "method": METHOD, "seconds": checked.proof_seconds},
+        else {"status": checked.status, "method": checked.method, "seconds": checked.proof_seconds},
         "vectors": {} if checked is None else dict(checked.vectors),
     }
     text = f"{build}: files unchanged, simulated, proved, counted" if not problems else "\n".join(problems)

@@ -16,8 +16,8 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel, VotingModel
-from wnn2hdl.lower import deforestation, structural
+from wnn2hdl.ir.models import AnyModel, TableSumModel, VotingModel
+from wnn2hdl.lower import deforestation, structural, sums
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +83,8 @@ def _neighbourhood(of: Ingredients) -> Circuit:
 
 
 def _network(of: Ingredients) -> Circuit:
+    if isinstance(of.model, TableSumModel):
+        return sums.network(of.model)
     assert isinstance(of.model, VotingModel)
     return structural.network(of.model)
 
@@ -101,7 +103,9 @@ def _reads_neighbours(model: AnyModel) -> bool:
     return isinstance(model, WisardModel) and isinstance(model.encoder, Neighbourhood)
 
 
-def _votes_on_features(model: AnyModel) -> bool:
+def _is_network(model: AnyModel) -> bool:
+    if isinstance(model, TableSumModel):
+        return isinstance(model.encoder, Words)
     return isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words)
 
 
@@ -135,7 +139,7 @@ TARGETS: Mapping[str, Target] = {
             "network",
             "A whole network: encoder, tables, votes and winner",
             _network,
-            _votes_on_features,
+            _is_network,
             classifies=False,
         ),
     )

@@ -33,8 +33,8 @@ def network_of(node: Node) -> LutNetwork | None:
             raise ValueError(f"{node.name} is not mapped to LUTs")
         case Register():
             raise ValueError(f"{node.name} is a register already")
-        case Sum(weights=weights, offset=offset):
-            return sum_network(weights, offset)
+        case Sum(weights=weights, offset=offset, width=width):
+            return sum_network(weights, offset, width)
         case ArgMax(words=words, tie=tie):
             return winner_network(tuple(map(width_of, words)), tie=tie)
         case Match(word=word):

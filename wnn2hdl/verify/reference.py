@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.ir import WisardModel
-from wnn2hdl.ir.models import FirstOrLast, VotingModel
+from wnn2hdl.ir.models import ClassifierModel, FirstOrLast
 
 
 def module(name: str, inputs: Mapping[str, int], outputs: Mapping[str, int], lines: Sequence[str]) -> str:
@@ -96,7 +96,7 @@ def winning(classes: int, width: int, *, ties: FirstOrLast) -> list[str]:
     return [*lines, f"  assign class_bits = class_{classes - 1};"]
 
 
-def class_bits(model: VotingModel) -> int:
+def class_bits(model: WisardModel | ClassifierModel) -> int:
     """Bits of a class index: 1 for two classes."""
     return (len(model.classes) - 1).bit_length()
 

@@ -6,11 +6,12 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import EdgeFilter, Neighbourhood, Thermometer, WisardModel, Words
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel, VotingModel
+from wnn2hdl.ir.models import AnyModel, TableSumModel, VotingModel
 from wnn2hdl.verify.block import block_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
 from wnn2hdl.verify.network import network_specification
 from wnn2hdl.verify.specification import Specification
+from wnn2hdl.verify.sums import sums_specification
 
 
 def specify(model: AnyModel, edges: EdgeFilter | None, care: Mapping[str, CareSet]) -> Specification:
@@ -26,6 +27,8 @@ def specify(model: AnyModel, edges: EdgeFilter | None, care: Mapping[str, CareSe
     """
     if isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words):
         return network_specification(model)
+    if isinstance(model, TableSumModel) and isinstance(model.encoder, Words):
+        return sums_specification(model)
     if not isinstance(model, WisardModel):
         raise InputError("models of this kind are not proved yet", value=model.kind)
     if isinstance(model.encoder, Neighbourhood):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.small_networks import lut_network
+from tests.small_sums import sum_network
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.planning import CompileOptions, with_input
 from wnn2hdl.build.verification import verify_build
@@ -60,6 +61,21 @@ def test_a_clock_that_cannot_be_met_writes_nothing(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no number of stages meets the clock"):
         compile_model(lut_network(2), tmp_path / "net", options, silent)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_sums_of_tables_are_built_and_proved_layer_by_layer(tmp_path: Path) -> None:
+    built = compile_model(sum_network(5), tmp_path / "sums", CompileOptions(style="equations"), silent)
+    assert built.failure is None
+    parts = {"layer_0", "saturation_0", "layer_1", "saturation_1", "network", "sobel"}
+    assert set(built.report["parts"]) == parts
+    assert "sums by substitution" in built.report["proof"]["method"]
+
+
+@pytest.mark.parametrize("options", [CompileOptions(stages=2), CompileOptions(clock=100)])
+def test_sums_of_tables_are_not_pipelined(tmp_path: Path, options: CompileOptions) -> None:
+    with pytest.raises(InputError, match="sums of tables cannot be pipelined yet"):
+        compile_model(sum_network(5), tmp_path / "sums", options, silent)
 
 
 def test_the_words_of_a_model_can_be_narrowed() -> None:

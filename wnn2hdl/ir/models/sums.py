@@ -1,7 +1,8 @@
 """Networks whose nodes are sums of tables of one word each (KANELÉ)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -13,6 +14,32 @@ from wnn2hdl.ir.modelfile import header, pack, unpack
 from wnn2hdl.ir.models.base import ClassifierModel, FirstOrLast, check_classes, in_chunks
 
 MAX_WORD_BITS = 16
+
+_MAX_LISTED = 1 << 20
+"""The widest range of sums whose values are told apart; of a wider one all values count as possible."""
+
+
+@dataclass(frozen=True, eq=False)
+class Total:
+    """The sums of a node before they saturate, as hardware counts them.
+
+    Attributes:
+        lowest: no sum is lower, whatever the input.
+        highest: no sum is higher.
+        offset: what is added to a sum, so that the total is not negative. The lowest ``output_bits`` bits of
+            the total of a sum in the node's range are the address that the next layer reads.
+        codes: bool ``[2**output_bits]``, which addresses may occur.
+    """
+
+    lowest: int
+    highest: int
+    offset: int
+    codes: NDArray[np.bool_]
+
+    @property
+    def bits(self) -> int:
+        """Bits of a total, at least 1."""
+        return max((self.highest + self.offset).bit_length(), 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +104,36 @@ class SumLayer:
                 result[node] += self.values[edge][words[self.sources[edge]]]
         return np.clip(result, self.lowest, -self.lowest - 1)
 
+    def totals(self, reachable: Sequence[NDArray[np.bool_]]) -> tuple[Total, ...]:
+        """What the nodes can add up to, if words take the codes in these: bool ``[2**input_bits]`` each.
+
+        Words count as independent of one another, so that there may be a sum that no input has.
+        """
+        return tuple(self._total(self.edges(node), reachable) for node in range(self.nodes))
+
+    def _total(self, edges: slice, reachable: Sequence[NDArray[np.bool_]]) -> Total:
+        added = [
+            np.unique(values[reachable[source]])
+            for source, values in zip(self.sources[edges], self.values[edges].astype(np.int64), strict=True)
+        ]
+        lowest, highest = (int(sum(values[end] for values in added)) for end in (0, -1))
+        span = 1 << self.output_bits
+        offset = -self.lowest + span * max(0, -(-(self.lowest - lowest) // span))
+        if highest - lowest < _MAX_LISTED:
+            sums = np.ones(1, dtype=np.bool_)
+            for values in added:
+                wider = np.zeros(len(sums) + int(values[-1] - values[0]), dtype=np.bool_)
+                for step in (values - values[0]).tolist():
+                    wider[step : step + len(sums)] |= sums
+                sums = wider
+            found = lowest + np.flatnonzero(sums)
+        else:
+            found = np.arange(max(lowest, self.lowest), min(highest, -self.lowest - 1) + 1)
+            found = np.append(found, [lowest, highest])
+        codes = np.zeros(span, dtype=np.bool_)
+        codes[np.clip(found, self.lowest, -self.lowest - 1) - self.lowest] = True
+        return Total(lowest, highest, offset, codes)
+
 
 @dataclass(frozen=True, eq=False)
 class TableSumModel(ClassifierModel):
@@ -123,6 +180,21 @@ class TableSumModel(ClassifierModel):
     def words(self) -> int:
         """Words of input bits."""
         return self.width // self.layers[0].input_bits
+
+    @cached_property
+    def totals(self) -> tuple[tuple[Total, ...], ...]:
+        """By layer, what its nodes can add up to."""
+        found: list[tuple[Total, ...]] = []
+        for number, layer in enumerate(self.layers):
+            occurring = [total.codes for total in found[-1]] if number else self.occurring(0)
+            found.append(layer.totals(occurring))
+        return tuple(found)
+
+    def occurring(self, number: int) -> list[NDArray[np.bool_]]:
+        """Which addresses may occur on each word that a layer reads, bool ``[2**input_bits]`` each."""
+        if number == 0:
+            return [np.ones(1 << self.layers[0].input_bits, dtype=np.bool_)] * self.words
+        return [total.codes for total in self.totals[number - 1]]
 
     def responses(self, bits: ArrayLike) -> NDArray[np.int64]:
         """Values of the last layer, saturated: int64 ``[samples, classes]``."""

@@ -94,3 +94,32 @@ def test_layers_that_do_not_fit() -> None:
     beyond = replace(layer(), sources=np.array([0, 1], dtype=np.int32))
     with pytest.raises(ValueError, match="reads word 1; there are 1"):
         TableSumModel(Words(1, 2), ("a", "b"), (beyond,))
+
+
+@given(models(), st.integers(0, 99))
+def test_totals_count_the_sums_from_nought_and_hold_the_next_address(model: TableSumModel, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    words = rng.integers(0, 1 << model.layers[0].input_bits, (model.words, 20))
+    for number, (layer, totals) in enumerate(zip(model.layers, model.totals, strict=True)):
+        occurring = model.occurring(number)
+        assert all(codes[word].all() for codes, word in zip(occurring, words, strict=True))
+        sums = replace(layer, output_bits=16).evaluate(words)
+        addresses = layer.evaluate(words) - layer.lowest
+        for node, total in enumerate(totals):
+            counted = sums[node] + total.offset
+            assert (total.lowest <= sums[node]).all()
+            assert (sums[node] <= total.highest).all()
+            assert (counted >= 0).all()
+            assert (counted < 1 << total.bits).all()
+            fits = (layer.lowest <= sums[node]) & (sums[node] < -layer.lowest)
+            assert np.array_equal((counted % (1 << layer.output_bits))[fits], addresses[node][fits])
+        words = addresses
+
+
+def test_a_range_too_wide_to_list_counts_as_possible_throughout() -> None:
+    values = np.array([[0, 3_000_000]], dtype=np.int32)
+    layer = SumLayer(2, 3, np.zeros(1, np.int32), np.zeros(1, np.int32), values)
+    total, none = layer.totals([np.ones(2, dtype=np.bool_)])
+    assert (total.lowest, total.highest) == (0, 3_000_000)
+    assert total.codes.tolist() == [False] * 4 + [True] * 4
+    assert none.codes.tolist() == [False] * 4 + [True] + [False] * 3
