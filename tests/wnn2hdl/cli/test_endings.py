@@ -64,7 +64,10 @@ def test_a_stopped_compile_leaves_nothing(model: Path, tmp_path: Path, number: s
 def test_the_second_of_two_processes_is_refused(model: Path, tmp_path: Path) -> None:
     first = start("compile", model, "--target", "pixel", "-o", tmp_path / "build")
     until((tmp_path / ".build.new").exists)
+    # It might be done before the second one looks.
+    first.send_signal(signal.SIGSTOP)
     status, line = end(start("compile", model, "--target", "pixel", "-o", tmp_path / "build"))
+    first.send_signal(signal.SIGCONT)
     assert (status, line.split(":")[1]) == (2, " another process is writing this build")
     assert end(first)[0] == 0
     assert [path.name for path in tmp_path.iterdir()] == ["build"]
