@@ -12,13 +12,15 @@ class Part(wiring.Component):
     Attributes:
         module_name: name of that module; components of one name must be equal.
         keep_hierarchy: whether a synthesiser must not dissolve the module into its surroundings.
-        clocked: whether it has registers, so that its module has the port ``clk``.
+        clocked: whether it has registers, so that its module has a clock.
+        clock: the port of its clock.
         latency: cycles from inputs to outputs; 0 of what is combinational.
     """
 
     module_name: str
     keep_hierarchy = False
     clocked = False
+    clock = "clk"
     latency = 0
 
     @property
@@ -59,7 +61,7 @@ class Emission:
             for name, member in part.signature.members.items()
         }
         if part.clocked:
-            ports["i_clk"] = ClockSignal()
+            ports[f"i_{part.clock}"] = ClockSignal()
         return Instance(name, **ports)
 
 

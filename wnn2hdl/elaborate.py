@@ -13,8 +13,9 @@ from hdl_templates.hierarchy import Part, place
 from hdl_templates.lookup import draw_network, unread_inputs
 from hdl_templates.matcher import draw_match
 from hdl_templates.ports import named, tie_off
+from hdl_templates.video import VideoCore
 from hdl_templates.winner import winner_network
-from wnn2hdl.ir import LutNetwork, Style
+from wnn2hdl.ir import LutNetwork, Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
 from wnn2hdl.ir.wires import Word, single_bits, width_of
@@ -36,6 +37,20 @@ def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
             network.
     """
     return CircuitComponent(circuit=circuit, style=style)
+
+
+def video_core(circuit: Circuit, video: VideoFormat, *, style: Style) -> VideoCore:
+    """The hardware of a video core.
+
+    Args:
+        circuit: the circuits of the core, see `wnn2hdl.lower.deforestation.video`.
+        video: its streams.
+        style: how its LUT networks are written.
+    """
+    classifier, *window = (
+        component(node.circuit, style=style) for node in circuit.nodes if isinstance(node, Instance)
+    )
+    return VideoCore(video=video, pixel=classifier, window=window[0] if window else None)
 
 
 class CircuitComponent(Part):

@@ -10,6 +10,7 @@ from wnn2hdl.build import remembered
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.emission import SOBEL, Files
 from wnn2hdl.build.simulating import simulate_apart, simulate_parts
+from wnn2hdl.build.streaming import sample_frames
 from wnn2hdl.files import read_text
 from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
@@ -130,9 +131,10 @@ def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[s
 
 
 def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
-    """What is counted: each circuit of a design, and the Sobel baseline."""
+    """What is counted: each circuit of a design, the video core around them, and the Sobel baseline."""
     text = read_text(files.verilog, "Verilog")
-    jobs = {part: Job(text, design.module(part)) for part in design.parts}
+    whole = () if design.video is None else (design.circuit.name,)
+    jobs = {part: Job(text, design.module(part)) for part in (*design.parts, *whole)}
     jobs[SOBEL] = Job(read_text(files.sobel, "Verilog"), design.module(SOBEL), baseline=True)
     return jobs
 
@@ -151,6 +153,15 @@ class _Simulations:
                 answers = claim.answers(inputs)
                 counts[part] = len(next(iter(inputs.values())))
                 self.keys[part] = remembered.simulation_key(circuit, design.style, inputs, answers)
+        if design.video is not None:
+            core, beats = design.circuit, sample_frames(design)
+            counts[core.name] = len(beats)
+            self.keys[core.name] = remembered.simulation_key(
+                core,
+                design.style,
+                {"pixels": beats.pixels, "starts": beats.starts, "ends": beats.ends},
+                {"answers": beats.answers},
+            )
         self.passed = {
             part: counts[part] for part, key in self.keys.items() if not afresh and remembered.passed(key)
         }

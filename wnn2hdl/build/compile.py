@@ -154,7 +154,7 @@ def _report(
         },
         proof=Proof(
             checked.status,
-            checked.method,
+            method(design, checked),
             checked.proof_seconds,
             checked.failure,
             before=checked.proved_before,
@@ -194,6 +194,12 @@ def _pruned(planned: Plan) -> dict[str, int | None]:
     if found is None:
         return {}
     return {"tables": found.tables, "of": found.of, "rows": found.rows, "changed": found.changed}
+
+
+def method(design: Design, checked: Checked) -> str:
+    """How a design was checked against its model, in words."""
+    shell = "; the registers and memories of the video core around them simulated"
+    return checked.method if design.video is None else f"{checked.method}{shell}"
 
 
 def _care(design: Design, coverage: float | None) -> Care:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
-from wnn2hdl.ir import EdgeFilter, LutNetwork, PictureEncoder, Style, WisardModel
+from wnn2hdl.ir import EdgeFilter, LutNetwork, PictureEncoder, Style, VideoFormat, WisardModel
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
@@ -52,6 +52,7 @@ class Design:
         name: what the names of all modules begin with.
         header: lines of the comment at the top of the Verilog.
         stages: where the registers of its pipeline are; None of a design without registers.
+        video: the streams of a video core; None of all other designs.
     """
 
     model: AnyModel
@@ -63,6 +64,7 @@ class Design:
     name: str
     header: tuple[str, ...]
     stages: Stages | None = None
+    video: VideoFormat | None = None
 
     @cached_property
     def specification(self) -> Specification:
@@ -81,8 +83,16 @@ class Design:
 
     @property
     def parts(self) -> dict[str, Circuit]:
-        """The circuits of the design by name, innermost first; the last is the top of the Verilog."""
-        return self.top.definitions()
+        """The circuits of the design by name, innermost first.
+
+        The last is the top of the Verilog, unless that is a video core: its circuits are apart from each
+        other.
+        """
+        return {
+            name: circuit
+            for name, circuit in self.top.definitions().items()
+            if self.video is None or circuit is not self.top
+        }
 
     @property
     def networks(self) -> dict[str, LutNetwork]:
@@ -127,6 +137,11 @@ class Design:
                 f"A pipeline of latency {cycles} that takes a new input in each; its outputs are registers."
             )
         made = f"LUT networks written as {self.style}, effort {effort}."
+        if self.video is not None:
+            lines.append(
+                f"Channels {self.video.channels} from the low byte, answer {self.video.answer}, "
+                f"lines of up to {self.video.max_width} pixels."
+            )
         if self.edges is not None:
             made = f"Edge filter of {self.edges.size} patterns. {made}"
         return (*lines, made, ", ".join(f"{name} {version}" for name, version in versions.items()))
@@ -155,6 +170,7 @@ class Design:
                 "edges": None if self.edges is None else self.edges.to_json(),
                 "circuit": circuit_to_json(self.circuit),
                 "pipeline": None if self.stages is None else self.stages.to_json(),
+                "video": None if self.video is None else self.video.to_json(),
             },
         )
 
@@ -187,6 +203,7 @@ class Design:
                 require_name(data["name"]),
                 tuple(data["header"]),
                 None if data["pipeline"] is None else Stages.from_json(data["pipeline"]),
+                None if data["video"] is None else VideoFormat.from_json(data["video"]),
             )
             design.check()
         except (KeyError, TypeError, ValueError, IndexError, AttributeError, InputError) as error:
@@ -206,8 +223,12 @@ class Design:
         for line in self.header:
             check_comment(line)
         claims = self.specification.claims
-        if self.circuit.name not in claims:
-            raise ValueError(f"nothing is known about the circuit {self.circuit.name}")
+        if self.target.streams != (self.video is not None):
+            raise ValueError(f"the {self.target.name} has streams, or has none")
+        outermost = self.parts if self.video else (self.circuit.name,)
+        if unknown := [name for name in outermost if name not in claims]:
+            raise ValueError(f"nothing is known about the circuits {unknown}")
+        require_unreserved(self.module(self.circuit.name))
         for name, part in self.parts.items():
             require_unreserved(self.module(name))
             # A circuit without its own claim is proved as a part of one that has one.

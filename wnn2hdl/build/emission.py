@@ -5,9 +5,19 @@ from importlib.metadata import version
 from pathlib import Path
 
 from hdl_templates import sobel
+from hdl_templates.hierarchy import Part
 from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
-from wnn2hdl.emit import CELLS_FILE, cells_model, testbench, vectors, verilog
+from wnn2hdl.build.streaming import sample_frames
+from wnn2hdl.emit import (
+    CELLS_FILE,
+    cells_model,
+    stream_testbench,
+    stream_vectors,
+    testbench,
+    vectors,
+    verilog,
+)
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import write_text
 from wnn2hdl.minimise.portfolio import generators as minimisers
@@ -64,6 +74,13 @@ class Files:
         return [self.cells, self.verilog]
 
 
+def top_part(design: Design) -> Part:
+    """The hardware of a design."""
+    if design.video is None:
+        return elaborate.component(design.top, style=design.style)
+    return elaborate.video_core(design.circuit, design.video, style=design.style)
+
+
 def generators() -> dict[str, str]:
     """The versions of all that decides the bytes of the Verilog."""
     yosys = find_yosys()
@@ -83,26 +100,36 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         ToolError: Yosys is missing or failed.
     """
     files = Files.of(design, Path())
-    part = elaborate.component(design.top, style=design.style)
+    part = top_part(design)
     prefix = f"{design.name}_"
     baseline = sobel.Parameters(sobel_threshold).create()
     title = f"Baseline: 3x3 Sobel operator, |gx| + |gy| >= {sobel_threshold}."
-    claim = design.specification.claims[design.circuit.name]
-    assert claim.stimulus is not None
-    inputs = claim.stimulus()
-    expected = claim.answers(inputs)
+    sources = [path.name for path in files.simulated]
+    top = design.module(design.circuit.name)
+    if design.video is None:
+        claim = design.specification.claims[design.circuit.name]
+        assert claim.stimulus is not None
+        inputs = claim.stimulus()
+        expected = claim.answers(inputs)
+        count = len(next(iter(expected.values())))
+        data = vectors(part, inputs, expected)
+        bench = testbench(part, name=top, count=count, vectors_file=files.vectors.name, sources=sources)
+    else:
+        frames = sample_frames(design)
+        data = stream_vectors(frames)
+        bench = stream_testbench(
+            name=top,
+            count=len(frames),
+            height=frames.height if design.video.has_edges else None,
+            vectors_file=files.vectors.name,
+            sources=sources,
+        )
     return {
         files.verilog.name: verilog(part, prefix=prefix, header=design.header),
         files.cells.name: cells_model(),
         files.sobel.name: verilog(baseline, prefix=prefix, header=[title]),
-        files.vectors.name: vectors(part, inputs, expected),
-        files.testbench.name: testbench(
-            part,
-            name=design.module(design.circuit.name),
-            count=len(next(iter(expected.values()))),
-            vectors_file=files.vectors.name,
-            sources=[path.name for path in files.simulated],
-        ),
+        files.vectors.name: data,
+        files.testbench.name: bench,
     }
 
 

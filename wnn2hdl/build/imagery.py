@@ -12,7 +12,7 @@ from wnn2hdl.edges.compare import Agreement
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import Picture, list_images, read_picture, whole_windows
 from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, WisardModel, picture_encoder, window_codes
-from wnn2hdl.ir.window import SIDE
+from wnn2hdl.ir.window import SIDE, framed_window_codes
 from wnn2hdl.lower.table import code_histogram
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.raster import Reading
@@ -53,10 +53,16 @@ class Survey:
     left_out: float
 
 
-def survey(model: WisardModel, imagery: Imagery, progress: Progress) -> Survey:
+def survey(model: WisardModel, imagery: Imagery, progress: Progress, *, framed: bool = False) -> Survey:
     """Count the codes of a model in imagery, and the binary windows that a model of pixels makes of it.
 
     Pixels and windows that are not all data are left out.
+
+    Args:
+        model: the model.
+        imagery: the pictures.
+        progress: called with each picture read.
+        framed: count also the windows at the border of a picture, see `framed_window_codes`.
 
     Raises:
         InputError: the folder holds no pictures, one cannot be read, none holds data, or the model is too
@@ -73,8 +79,11 @@ def survey(model: WisardModel, imagery: Imagery, progress: Progress) -> Survey:
         codes += np.bincount(found, minlength=len(codes))
         counted, pixels = counted + found.size, pixels + whole.size
         if classifier is not None and min(picture.valid.shape) >= SIDE:
-            seen = window_codes(classifier.classify(picture.pixels) != 0)
-            windows += np.bincount(seen[_inside(picture, SIDE // 2)], minlength=WINDOW_CODES)
+            binary, inside = classifier.classify(picture.pixels) != 0, _inside(picture, SIDE // 2)
+            if framed:
+                inside = whole_windows(np.pad(picture.valid, 1, mode="edge"), SIDE // 2)[1:-1, 1:-1]
+            seen = framed_window_codes(binary) if framed else window_codes(binary)
+            windows += np.bincount(seen[inside], minlength=WINDOW_CODES)
     if not counted:
         raise InputError("no pixel of the pictures is data", value=imagery.folder, hint="give others")
     return Survey(codes, windows, 1 - counted / pixels)

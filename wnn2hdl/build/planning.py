@@ -14,11 +14,20 @@ from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.edges import RULES, Agreement, from_file
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import feature_bits, require_vector_classifier, scaled
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, PictureEncoder, Style, WisardModel
+from wnn2hdl.ir import (
+    WINDOW_CODES,
+    EdgeFilter,
+    Neighbourhood,
+    PictureEncoder,
+    Style,
+    VideoFormat,
+    WisardModel,
+)
 from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.features import FixedPoint, Thermometer
 from wnn2hdl.ir.models import AnyModel, LogicModel, TableSumModel
+from wnn2hdl.ir.video import Answer
 from wnn2hdl.lower.table import care_set
 from wnn2hdl.lower.targets import Ingredients, target_for
 from wnn2hdl.minimise import Minimised
@@ -53,6 +62,9 @@ class CompileOptions:
             `wnn2hdl.schedule`.
         style: how LUT networks are written: as cells of the vendor, or as equations.
         effort: 0 to 3, how long to look for a smaller circuit.
+        max_width: of a video core: pixels of the longest line.
+        channels: of a video core: those of a pixel, from the least significant byte.
+        answer: of a video core: ``class``, ``edge`` or ``both``.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
         test_table: file of labelled feature vectors for the same, of a model that reads these.
@@ -81,6 +93,9 @@ class CompileOptions:
     clock: float | None = None
     style: Style = "cells"
     effort: int = 1
+    max_width: int = VideoFormat.max_width
+    channels: str = VideoFormat.channels
+    answer: Answer = VideoFormat.answer
     test_images: Path | None = None
     test_masks: Path | None = None
     test_table: Path | None = None
@@ -155,13 +170,21 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
     model = model if pruned is None else pruned.model
     target = target_for(model, options.target)
     edges, care, seen = None, None, None
+    video = VideoFormat(options.max_width, options.channels, options.answer) if target.streams else None
+    has_edges = target.has_edges and (video is None or video.has_edges)
     if isinstance(model, WisardModel) and isinstance(model.encoder, PictureEncoder):
-        edges = _edge_filter(model, options, progress) if target.has_edges else None
-        seen = survey(model, _care_imagery(options), progress) if options.mode == "domain" else None
+        edges = _edge_filter(model, options, progress) if has_edges else None
+        seen = (
+            survey(model, _care_imagery(options), progress, framed=target.streams)
+            if options.mode == "domain"
+            else None
+        )
         care = _care_sets(model, options, seen) if seen is not None else None
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
-    lowered = target.lower(Ingredients(model, edges, care))
+    if video is not None and (options.stages is not None or options.clock is not None):
+        raise InputError("a video core has registers of its own", hint="leave --stages and --clock out")
+    lowered = target.lower(Ingredients(model, edges, care, video))
     minimised = minimise(lowered, options.effort, progress, by=minimise_once)
     design = Design(
         model,
@@ -173,6 +196,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         name,
         (),
         _stages(minimised.circuit, options),
+        video,
     )
     design = replace(design, header=design.made_by(options.effort, generators()))
     design.check()

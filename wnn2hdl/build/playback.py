@@ -12,18 +12,23 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from wnn2hdl.build.design import Design
+from wnn2hdl.build.emission import Files
+from wnn2hdl.build.streaming import beats, framed_answers
 from wnn2hdl.build.verification import open_build
-from wnn2hdl.elaborate import component
+from wnn2hdl.elaborate import component, video_core
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.images import read_rgb
-from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS
+from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS, codes_to_bits
 from wnn2hdl.ir.pixels import pixel_bits
+from wnn2hdl.ir.video import MAX_HEIGHT
+from wnn2hdl.ir.window import framed_window_codes
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
 from wnn2hdl.verify.compiled import run_compiled
 from wnn2hdl.verify.simulation import simulate
 from wnn2hdl.verify.specification import Samples
+from wnn2hdl.verify.stream import run_stream, simulate_stream
 
 SimulatorName = Literal["amaranth", "verilator", "icarus"]
 
@@ -33,13 +38,14 @@ class Playback:
     """A circuit's answers for a picture, all of them right.
 
     Attributes:
-        windows: windows simulated.
+        windows: windows simulated, or pixels of a frame.
         cared: share of their pixels, or of the windows of a neighbourhood, whose code the circuit is proved
             on, 0 to 1.
         seconds: wall clock of the simulation.
         compile_seconds: wall clock of all else that the simulator needed first; 0 for Amaranth's.
         foreground: bool, one for each window's place, whether the circuit takes the middle for foreground.
-        edges: bool, same shape, its edge bit; None of a neighbourhood, which has none.
+        edges: bool, same shape, its edge bit; None of a circuit that has none.
+        frame: of a video core what it sends, uint8 of the same shape; None of all others.
     """
 
     windows: int
@@ -48,6 +54,7 @@ class Playback:
     compile_seconds: float
     foreground: NDArray[np.bool_]
     edges: NDArray[np.bool_] | None
+    frame: NDArray[np.uint8] | None = None
 
 
 def play(
@@ -58,14 +65,15 @@ def play(
     vcd: Path | None = None,
     reading: Reading = Reading(),  # noqa: B008  # frozen
 ) -> Playback:
-    """Simulate a build's circuit on every window of a picture and compare every output bit.
+    """Simulate a build's circuit on every window of a picture, or as a frame, and compare every output bit.
 
     Where a code is cared for, the outputs must be the model's; elsewhere, in domain mode, those of the mapped
     LUTs. The reference window of the match count is that of the window before.
 
     Args:
         folder: a build whose circuit reads a window.
-        picture: the picture, at least as large as a window, all of it data.
+        picture: the picture, at least as large as a window and no wider than a video core is made for, all
+            of it data.
         simulator: Amaranth's, or a compiled simulation of the emitted Verilog.
         progress: called with the windows done; the compiled simulators report nothing before the end.
         vcd: where Amaranth's simulator records the waves of the first windows.
@@ -78,15 +86,17 @@ def play(
     """
     design, files, _ = open_build(folder)
     top = design.top
+    if vcd is not None and simulator != "amaranth":
+        raise InputError(
+            "waves are recorded by Amaranth's simulator only", value=simulator, hint="leave --vcd out"
+        )
+    if design.video is not None:
+        return _play_frame(design, files, read_rgb(picture, reading), simulator, progress, vcd)
     window = next((port for port in top.inputs if port.name == "window"), None)
     if window is None:
         raise InputError(
             "only a circuit that reads a window runs over a picture",
             value=f"{folder} is a {design.target.name}",
-        )
-    if vcd is not None and simulator != "amaranth":
-        raise InputError(
-            "waves are recorded by Amaranth's simulator only", value=simulator, hint="leave --vcd out"
         )
     rgb = read_rgb(picture, reading)
     side = math.isqrt(window.width // PIXEL_BITS)
@@ -101,7 +111,7 @@ def play(
         ]
         inputs["reference_bits"] = np.roll(bits, 1, axis=0)
     expected = top.evaluate(inputs)
-    cared = _check_cared(design, inputs, expected)
+    cared = _check_cared(design, top.name, inputs, expected)
     total = len(windows)
     progress("simulating windows", 0, total)
     started = time.perf_counter()
@@ -126,16 +136,57 @@ def play(
     return Playback(total, cared, seconds, compile_seconds, classes.reshape(shape), edges)
 
 
-def _check_cared(design: Design, inputs: Samples, answers: Samples) -> float:
-    """Check the mapped LUTs' answers against the model's wherever these are cared for.
+def _play_frame(
+    design: Design,
+    files: Files,
+    rgb: NDArray[np.uint8],
+    simulator: SimulatorName,
+    progress: Progress,
+    vcd: Path | None,
+) -> Playback:
+    """`play` for a video core."""
+    assert design.video is not None
+    height, width = rgb.shape[:2]
+    if height > MAX_HEIGHT or width > design.video.max_width:
+        raise InputError(
+            "the picture is larger than the frames of the core",
+            value=f"{width}x{height}, allowed are {design.video.max_width}x{MAX_HEIGHT}",
+            hint="compile with a larger --max-width, or give a smaller picture",
+        )
+    pixels = {"rgb": pixel_bits(rgb.reshape(-1, len(CHANNELS)))}
+    cared = _check_cared(design, "pixel", pixels, design.parts["pixel"].evaluate(pixels))
+    classes, edges = framed_answers(design, rgb)
+    if edges is not None:
+        bits = {"bits": codes_to_bits(framed_window_codes(classes != 0).ravel(), WINDOW_BITS)}
+        _check_cared(design, "edge", bits, {"edge_bit": edges.reshape(-1, 1)})
+    frame = beats(design, [rgb])
+    progress("simulating pixels", 0, len(frame))
+    started = time.perf_counter()
+    if simulator == "amaranth":
+        core = video_core(design.circuit, design.video, style=design.style)
+        seconds = simulate_stream(
+            core, frame, progress=partial(progress, "simulating pixels"), vcd=vcd
+        ).seconds
+    else:
+        module = design.module(design.circuit.name)
+        told = design.video.has_edges
+        seconds = run_stream(frame, module, files.simulated, simulator, told=told)
+        progress("simulating pixels", len(frame), len(frame))
+    compile_seconds = time.perf_counter() - started - seconds if simulator != "amaranth" else 0.0
+    sent = frame.answers.reshape(height, width)
+    return Playback(len(frame), cared, seconds, compile_seconds, classes != 0, edges, sent)
+
+
+def _check_cared(design: Design, part: str, inputs: Samples, answers: Samples) -> float:
+    """Check the mapped LUTs' answers of a circuit against the model's wherever these are cared for.
 
     Returns:
-        The share of pixels, or of windows of a neighbourhood, that are cared for.
+        The share of what it reads that is cared for: of pixels, or of windows.
 
     Raises:
         CheckError: an answer is wrong.
     """
-    claim = design.specification.claims[design.circuit.name]
+    claim = design.specification.claims[part]
     cared = claim.cared(inputs)
     inside = cared.all(axis=1)
     model = claim.answers(inputs)

@@ -10,6 +10,9 @@ import json
 from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 import hdl_templates
 import wnn2hdl
@@ -19,9 +22,9 @@ from wnn2hdl.ir.circuit_file import circuit_to_json
 from wnn2hdl.synth import cache
 from wnn2hdl.tools import abc_version, find_yosys
 from wnn2hdl.verify.equivalence import Circuit as Module
-from wnn2hdl.verify.specification import Samples
 
 Key = Mapping[str, str]
+Arrays = Mapping[str, NDArray[Any]]
 
 _PASSED = {"passed": True}
 
@@ -39,7 +42,7 @@ def code_digest() -> str:
     return digest.hexdigest()
 
 
-def simulation_key(circuit: Circuit, style: Style, inputs: Samples, answers: Samples) -> Key:
+def simulation_key(circuit: Circuit, style: Style, inputs: Arrays, answers: Arrays) -> Key:
     """All that a simulation depends on: the circuit and what draws it, vectors and answers, the simulator."""
     return {
         "check": "simulation",
@@ -82,7 +85,7 @@ def _module_digest(module: Module) -> str:
     return digest.hexdigest()
 
 
-def _digest(samples: Samples) -> str:
+def _digest(samples: Arrays) -> str:
     digest = hashlib.sha256()
     for port, bits in samples.items():
         digest.update(f"{port} {bits.shape}".encode())

@@ -10,10 +10,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from wnn2hdl.build.design import Design
-from wnn2hdl.elaborate import component
+from wnn2hdl.build.streaming import sample_frames
+from wnn2hdl.elaborate import component, video_core
 from wnn2hdl.errors import CheckError
 from wnn2hdl.tools import run
-from wnn2hdl.verify.simulation import simulate
+from wnn2hdl.verify.simulation import SimulationResult, simulate
+from wnn2hdl.verify.stream import simulate_stream
 
 _TIMEOUT = 3600.0
 
@@ -23,7 +25,7 @@ def simulate_apart(folder: Path, parts: Sequence[str]) -> tuple[dict[str, int], 
 
     Args:
         folder: holds the build's model and design.
-        parts: the circuits.
+        parts: the circuits, or the video core.
 
     Returns:
         How many vectors each was simulated on, and the first mismatch in words; None if there is none.
@@ -40,16 +42,22 @@ def simulate_parts(design: Design, parts: Sequence[str]) -> tuple[dict[str, int]
     """The same in this process."""
     vectors: dict[str, int] = {}
     for part in parts:
-        claim = design.specification.claims[part]
-        assert claim.stimulus is not None
-        inputs = claim.stimulus()
         try:
-            circuit = component(design.parts[part], style=design.style)
-            result = simulate(circuit, inputs, claim.answers(inputs))
+            vectors[part] = _simulate(design, part).vectors
         except CheckError as error:
             return vectors, f"{part}: {error.line()}"
-        vectors[part] = result.vectors
     return vectors, None
+
+
+def _simulate(design: Design, part: str) -> SimulationResult:
+    if part not in design.parts:
+        assert design.video is not None
+        core = video_core(design.circuit, design.video, style=design.style)
+        return simulate_stream(core, sample_frames(design))
+    claim = design.specification.claims[part]
+    assert claim.stimulus is not None
+    inputs = claim.stimulus()
+    return simulate(component(design.parts[part], style=design.style), inputs, claim.answers(inputs))
 
 
 if __name__ == "__main__":

@@ -23,8 +23,9 @@ from wnn2hdl.cli.pictures import (
 )
 from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
 from wnn2hdl.errors import CheckError
-from wnn2hdl.ir import Style
+from wnn2hdl.ir import Style, VideoFormat
 from wnn2hdl.ir.models import load_model
+from wnn2hdl.ir.video import MAX_WIDTH, ORDERS, Answer
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.schedule import MAX_STAGES
 
@@ -38,6 +39,9 @@ SECTIONS = {
         "--care-min",
         "--stages",
         "--clock",
+        "--max-width",
+        "--channels",
+        "--answer",
         "--style",
         "--effort",
         "--max-luts",
@@ -72,7 +76,7 @@ SECTIONS = {
     metavar="MODE",
     default="exact",
     show_default=True,
-    help="Equal the model on every input (exact), or on the codes that occur in --care (domain).",
+    help="Be exact, or equal on --care (domain).",
 )
 @click.option("--care", type=folder, help="Take the care set of domain mode from this imagery.")
 @click.option(
@@ -86,9 +90,8 @@ SECTIONS = {
 @click.option(
     "--edges",
     default="boundary",
-    show_default=True,
     metavar="NAME|FILE",
-    help="Use boundary, half-plane, learned or a file's patterns.",
+    help="Use half-plane, learned or a file, not boundary.",
 )
 @click.option("--edge-images", type=folder, help="Learn from this imagery.  [default: --care]")
 @click.option(
@@ -133,6 +136,30 @@ SECTIONS = {
     show_default=True,
     help="Set the search effort.",
 )
+@click.option(
+    "--max-width",
+    type=click.IntRange(2, MAX_WIDTH),
+    metavar="N",
+    default=VideoFormat.max_width,
+    show_default=True,
+    help="Take video of N columns.",
+)
+@click.option(
+    "--channels",
+    type=click.Choice(ORDERS),
+    metavar="ORDER",
+    default=VideoFormat.channels,
+    show_default=True,
+    help="Take video so, low byte first.",
+)
+@click.option(
+    "--answer",
+    type=click.Choice(get_args(Answer)),
+    metavar="KIND",
+    default=VideoFormat.answer,
+    show_default=True,
+    help="Send class, edge or both of video.",
+)
 @click.option("--test-images", type=folder, help="Measure the report's accuracies on these pictures.")
 @click.option("--test-masks", type=folder, help="Find the masks of --test-images in this folder.")
 @click.option("--prune", is_flag=True, help="Leave out tables of a network that change no answer.")
@@ -162,7 +189,7 @@ def compile_command(
     \b
     Examples:
       wnn2hdl compile model.json --mode domain --care IMAGES -o build/mine
-      wnn2hdl compile model.json --edges learned --edge-images IMAGES --edge-luts 2 -o build/mine
+      wnn2hdl compile model.json --target video -o build/core
     """
     options = CompileOptions(care_minimum=choices.pop("care_min"), **choices)
     with progress() as report:

@@ -62,7 +62,9 @@ def verify_command(build: Path, as_json: bool) -> None:
     help="Simulate the circuit with this program.",
 )
 @click.option(
-    "--vcd", type=file, help="Record the waves of the first windows here (with Amaranth's simulator)."
+    "--vcd",
+    type=file,
+    help="Record the waves here (with Amaranth's simulator).",
 )
 @output_option("Write the pictures into this folder.  [default: BUILD/simulation]")
 @json_option
@@ -77,6 +79,8 @@ def simulate_command(
 ) -> None:
     """Run the circuit of BUILD over every window of a picture and compare each output bit.
 
+    A video core gets the picture as a frame, with pauses on both sides; what it sends is written too.
+
     \b
     Examples:
       wnn2hdl simulate build/mine --image photo.png --simulator verilator -o build/pictures
@@ -86,11 +90,12 @@ def simulate_command(
         result = play(build, image, simulator, report, vcd, reading)
     output = output or build / "simulation"
     make_folder(output)
-    pictures, places = {"class": result.foreground}, "windows"
-    if result.edges is not None:
-        pictures["edge"], places = result.edges, "pixels"
-    for name, flags in pictures.items():
-        write_png(output / f"{image.stem}-{name}.png", flags)
+    found = {"class": result.foreground, "edge": result.edges, "frame": result.frame}
+    pictures = {name: array for name, array in found.items() if array is not None}
+    for name, array in pictures.items():
+        write_png(output / f"{image.stem}-{name}.png", array)
+    places = "windows" if pictures.keys() == {"class"} else "pixels"
+    runs = "windows" if result.frame is None else "pixels"
     rate = result.windows / result.seconds
     data = {
         "image": str(image),
@@ -104,7 +109,7 @@ def simulate_command(
         "pictures": [str(output / f"{image.stem}-{name}.png") for name in pictures],
     }
     text = (
-        f"{image}: {result.windows:,} windows in {result.seconds:.1f} s ({rate:,.0f} per second), all bits "
+        f"{image}: {result.windows:,} {runs} in {result.seconds:.1f} s ({rate:,.0f} per second), all bits "
         f"as the model says; {result.cared:.2%} of the {places} have a code that the circuit is proved on\n"
         f"pictures in {output}"
     )

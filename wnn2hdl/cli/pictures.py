@@ -91,7 +91,7 @@ bands_option = click.option("--bands", type=BandsType(), help="Choose the bands 
 scale_option = click.option(
     "--scale",
     type=ScaleType(),
-    help="Map these values to 0 and 255; needed beyond 8 bits.",
+    help="Map these values to 0 and 255, beyond 8 bits.",
 )
 alpha_option = click.option(
     "--alpha",

@@ -57,7 +57,7 @@ most_changed_option = click.option(
     metavar="SHARE",
     default=0.0,
     show_default=True,
-    help="Let this share of the answers change.",
+    help="Let this share of them change.",
 )
 thermometer_option = click.option(
     "--thermometer",

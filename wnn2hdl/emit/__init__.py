@@ -2,6 +2,7 @@
 
 from wnn2hdl.emit.cells import CELLS_FILE, cells_model
 from wnn2hdl.emit.manifest import MANIFEST_NAME, check, manifest, write_manifest
+from wnn2hdl.emit.stream_testbench import stream_testbench, stream_vectors
 from wnn2hdl.emit.testbench import testbench, vectors
 from wnn2hdl.emit.verilog import verilog
 
@@ -11,6 +12,8 @@ __all__ = [
     "cells_model",
     "check",
     "manifest",
+    "stream_testbench",
+    "stream_vectors",
     "testbench",
     "vectors",
     "verilog",

@@ -1,8 +1,6 @@
 """Which name each bit of a module goes by in the emitted text."""
 
 import re
-from collections import Counter
-from collections.abc import Iterable
 
 from wnn2hdl.emit.expression import Piece, pieces
 from wnn2hdl.emit.netlist import CELL_OUTPUTS, Bit, BitVector, Cell, Module
@@ -21,6 +19,7 @@ class Names:
     Attributes:
         widths: bits of each named net, ports among them.
         instances: the name of each cell that is an instance of a module.
+        memories: the name of each memory.
         aliases: for each name of a bit of an input port, that bit's own reference.
     """
 
@@ -36,9 +35,11 @@ class Names:
             if cell.is_instance:
                 self.instances[cell] = self._plain(cell.name)
                 self._instance_names.add(self.instances[cell])
+        self.memories = {name: self._new(name, memory.width) for name, memory in module.memories.items()}
         self._by_bits: dict[BitVector, str] = {}
-        # A name that Amaranth numbered, as in ``total$7``, is used only if there is no other.
-        for name in sorted(module.nets, key=lambda name: "$" in name):
+        # A name that Amaranth numbered or made of two, as in ``total$7`` or ``port__en``, is used only if
+        # there is no other.
+        for name in sorted(module.nets, key=lambda name: "$" in name or "__" in name):
             if not module.nets[name].hidden:
                 self._by_bits.setdefault(module.nets[name].bits, name)
         for port, bits in module.inputs.items():
@@ -102,15 +103,6 @@ class Names:
             number += 1
             plain = f"{base}_{number}"
         return plain
-
-
-def count_reads(module: Module) -> Counter[Bit]:
-    """How often each bit is read by cells and output ports."""
-    words: Iterable[BitVector] = (
-        *(bits for cell in module.cells for bits in cell.inputs.values()),
-        *module.outputs.values(),
-    )
-    return Counter(bit for bits in words for bit in bits)
 
 
 def _is_vendor_cell(cell: Cell) -> bool:

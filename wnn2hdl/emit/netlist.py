@@ -7,8 +7,9 @@ structure as JSON. Nothing is optimised on the way, so the netlist is what the c
 import itertools
 import json
 import tempfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,14 @@ BitVector = tuple[Bit, ...]
 _SECONDS = 120.0
 CELL_OUTPUTS = frozenset({"O", "O5", "O6"})
 """Output pins of the vendor's look-up tables and multiplexers (UG953), whose modules are not read."""
+
+
+FLIP_FLOP = "$dff"
+MEMORY_READ, MEMORY_WRITE, MEMORY_CONTENTS = "$memrd_v2", "$memwr_v2", "$meminit_v2"
+"""Kinds of cells: a register, the ports of a memory, and what is in it at first."""
+
+
+_TRIMMED = frozenset({"$add", "$sub", "$mul"})
 
 
 @dataclass(frozen=True)
@@ -72,16 +81,31 @@ class Cell:
         """The value of a numeric parameter."""
         return int(self.parameters[parameter], 2)
 
+    @property
+    def memory(self) -> str:
+        """The memory that it is a port of."""
+        return self.parameters["MEMID"].removeprefix("\\")
+
+
+@dataclass(frozen=True)
+class Memory:
+    """A memory: bits of a word, how many words, and attributes. Its ports are cells, see `MEMORY_READ`."""
+
+    width: int
+    words: int
+    attributes: Mapping[str, str]
+
 
 @dataclass(frozen=True)
 class Module:
-    """A module: the bits of its ports in the order of declaration, its nets and its cells."""
+    """A module: the bits of its ports in the order of declaration, its nets, its cells, its memories."""
 
     name: str
     inputs: Mapping[str, BitVector]
     outputs: Mapping[str, BitVector]
     nets: Mapping[str, Net]
     cells: tuple[Cell, ...]
+    memories: Mapping[str, Memory] = field(default_factory=dict)
 
 
 def read_modules(rtlil: Sequence[str], ports: Mapping[str, Sequence[str]]) -> dict[str, Module]:
@@ -112,6 +136,33 @@ def read_modules(rtlil: Sequence[str], ports: Mapping[str, Sequence[str]]) -> di
     return {name: _module(name, data, found) for name, data in found.items()}
 
 
+def count_reads(module: Module) -> Counter[Bit]:
+    """How often each bit is read by cells and output ports."""
+    words: Iterable[BitVector] = (
+        *(bits for cell in module.cells for bits in cell.inputs.values()),
+        *module.outputs.values(),
+    )
+    return Counter(bit for bits in words for bit in bits)
+
+
+def trimmed(module: Module) -> Module:
+    """The module with adders and so on no wider than what is read of them, as of the next value of a counter.
+
+    The low bits of what they compute are those of narrower ones.
+    """
+    reads = count_reads(module)
+    cells = []
+    for cell in module.cells:
+        if cell.kind in _TRIMMED:
+            bits = cell.outputs["Y"]
+            wanted = max((place + 1 for place, bit in enumerate(bits) if reads[bit]), default=len(bits))
+            reads.subtract(bit for word in cell.inputs.values() for bit in word[wanted:])
+            inputs = {pin: word[:wanted] for pin, word in cell.inputs.items()}
+            cell = replace(cell, inputs=inputs, outputs={"Y": bits[:wanted]})
+        cells.append(cell)
+    return replace(module, cells=tuple(cells))
+
+
 def _module(name: str, data: Mapping[str, Any], modules: Mapping[str, Any]) -> Module:
     ports: dict[str, dict[str, BitVector]] = {"input": {}, "output": {}}
     for port, details in data["ports"].items():
@@ -127,7 +178,11 @@ def _module(name: str, data: Mapping[str, Any], modules: Mapping[str, Any]) -> M
     }
     cells = [_cell(cell, details, modules) for cell, details in data["cells"].items()]
     cells.sort(key=lambda cell: _natural(cell.name))
-    return Module(name, ports["input"], ports["output"], nets, tuple(cells))
+    memories = {
+        memory: Memory(details["width"], details["size"], details["attributes"])
+        for memory, details in data.get("memories", {}).items()
+    }
+    return Module(name, ports["input"], ports["output"], nets, tuple(cells), memories)
 
 
 def _cell(name: str, data: Mapping[str, Any], modules: Mapping[str, Any]) -> Cell:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from wnn2hdl.emit.netlist import Cell, Module
+from wnn2hdl.emit.netlist import FLIP_FLOP, MEMORY_READ, Cell, Module
 from wnn2hdl.ir.packing import SHARED_INPUTS, Gate, pairs
 
 _LUTS = {f"LUT{inputs}": inputs for inputs in range(1, 7)}
@@ -25,7 +25,7 @@ def packed(module: Module) -> Module:
     for cell in module.cells:
         drives = tuple(bit for bits in cell.outputs.values() for bit in bits)
         reads = frozenset(bit for bits in cell.inputs.values() for bit in bits if isinstance(bit, int))
-        is_register = cell.kind == "$dff"
+        is_register = cell.kind in (FLIP_FLOP, MEMORY_READ)
         is_lut = cell.kind in _LUTS and joined.isdisjoint(drives)
         gates.append(Gate(frozenset() if is_register else reads, () if is_register else drives, is_lut))
     first = dict(pairs(gates))

@@ -1,11 +1,21 @@
 """From the cells of a module to Verilog statements; operators that are read once are inlined."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from wnn2hdl.emit.expression import Operation, constant, render, render_word
-from wnn2hdl.emit.names import Names, count_reads
-from wnn2hdl.emit.netlist import Bit, BitVector, Cell, Module
+from wnn2hdl.emit.names import Names
+from wnn2hdl.emit.netlist import (
+    FLIP_FLOP,
+    MEMORY_CONTENTS,
+    MEMORY_READ,
+    MEMORY_WRITE,
+    Bit,
+    BitVector,
+    Cell,
+    Module,
+    count_reads,
+)
 
 UNUSED = "unused"
 """The wire that gathers what nothing reads; it stays although nothing reads it either."""
@@ -14,9 +24,8 @@ _BITWISE = {"$and": "&", "$or": "|", "$xor": "^"}
 _ARITHMETIC = {"$add": "+", "$sub": "-", "$mul": "*"}
 _COMPARISONS = {"$ge": ">=", "$gt": ">", "$le": "<=", "$lt": "<", "$eq": "==", "$ne": "!="}
 _REDUCTIONS = {"$reduce_or": "|", "$reduce_bool": "|", "$reduce_and": "&", "$reduce_xor": "^"}
-_FLIP_FLOP = "$dff"
 _KINDS = (
-    {_FLIP_FLOP, "$mux", "$not", "$neg", "$logic_not"}
+    {"$mux", "$not", "$neg", "$logic_not"}
     | _BITWISE.keys()
     | _ARITHMETIC.keys()
     | _COMPARISONS.keys()
@@ -29,13 +38,14 @@ class Statement:
     """A statement of a module.
 
     Attributes:
-        drives: the nets that it drives.
-        reads: the nets that it reads.
-        text: an expression, for ``assign``; the pins of an instance; what a flip-flop stores.
+        drives: the nets that it drives; of what writes a memory, the memory.
+        reads: the nets and memories that it reads.
+        text: an expression, for ``assign``; the pins of an instance; what happens at a clock edge.
         head: of an instance, what stands before its pins; empty of all others.
-        marks: of a flip-flop, the attributes of its net.
-        clock: of a flip-flop, as an expression of the edge; None of all others.
-        initial: of a flip-flop, the value before the first edge.
+        marks: of a flip-flop, the attributes of its net; of what writes a memory, those of the memory.
+        clock: of what happens at a clock edge, as an expression of the edge; None of all others.
+        initial: of a flip-flop, and of the words of a memory, the value before the first edge.
+        words: of what writes a memory, how many words it has.
     """
 
     drives: tuple[str, ...]
@@ -45,6 +55,7 @@ class Statement:
     marks: str = ""
     clock: str | None = None
     initial: int | None = None
+    words: int | None = None
 
 
 def statements(module: Module) -> tuple[list[Statement], dict[str, int]]:
@@ -82,7 +93,11 @@ class _Translation:
         for port in composed:
             if len(words[port]) > 1:
                 self.names.joined_output(port)
-        found += [self._statement(cell) for cell in self.module.cells if not self._inlined(cell)]
+        found += [
+            self._statement(cell)
+            for cell in self.module.cells
+            if cell.kind != MEMORY_CONTENTS and not self._inlined(cell)
+        ]
         found += [
             Statement((name,), frozenset({piece[0]}), render_word([piece], self.names.widths))
             for name, piece in self.names.aliases.items()
@@ -122,12 +137,16 @@ class _Translation:
         self.read_nets = set()
         if cell.is_instance:
             return self._instance(cell)
-        if cell.kind not in _KINDS:
+        if cell.kind == MEMORY_WRITE:
+            return self._memory_write(cell)
+        if cell.kind not in _KINDS | {FLIP_FLOP, MEMORY_READ}:
             raise NotImplementedError(f"{self.module.name} has a {cell.kind}, for which there is no Verilog")
         (output,) = cell.outputs.values()
         ((net, _, _),) = self.names.driven(output)
-        if cell.kind == _FLIP_FLOP:
+        if cell.kind == FLIP_FLOP:
             return self._flip_flop(cell, net, output)
+        if cell.kind == MEMORY_READ:
+            return self._memory_read(cell, net)
         text = self._expression(cell)
         return Statement((net,), frozenset(self.read_nets), text)
 
@@ -177,12 +196,85 @@ class _Translation:
         return self._word((*bits, *[sign] * (width - len(bits))))
 
     def _flip_flop(self, cell: Cell, net: str, output: BitVector) -> Statement:
-        edge = "posedge" if cell.number("CLK_POLARITY") else "negedge"
-        clock, data = f"{edge} {self._word(cell.inputs['CLK'])}", self._word(cell.inputs["D"])
+        text = self._update(net, output, cell.inputs["D"])
         nets = [x for x in self.module.nets.values() if x.bits == output]
         initial = next((x.initial for x in nets if x.initial is not None), None)
         marks = _marks({name: text for x in nets for name, text in x.attributes.items()})
-        return Statement((net,), frozenset(self.read_nets), data, marks=marks, clock=clock, initial=initial)
+        clock = self._edge(cell)
+        return Statement((net,), frozenset(self.read_nets), text, marks=marks, clock=clock, initial=initial)
+
+    def _update(self, net: str, old: BitVector, new: BitVector) -> str:
+        """What a flip-flop does at an edge: a multiplexer in front of it alone is an ``if``."""
+        mux = self.drivers.get(new[0])
+        if mux is None or not self._private(mux, new):
+            return f"{net} <= {self._value(new)};"
+        condition = self._value(mux.inputs["S"])
+        then, otherwise = mux.inputs["B"], mux.inputs["A"]
+        if otherwise == old:
+            return f"if ({condition}) {self._update(net, old, then)}"
+        if then == old:
+            return f"if ({_opposite(condition)}) {self._update(net, old, otherwise)}"
+        first, second = self._update(net, old, then), self._update(net, old, otherwise)
+        if first.startswith("if"):
+            # An ``else`` belongs to the nearest ``if``.
+            condition, first, second = _opposite(condition), second, first
+            first = f"begin {first} end" if first.startswith("if") else first
+        return f"if ({condition}) {first} else {second}"
+
+    def _private(self, cell: Cell, bits: BitVector) -> bool:
+        """Whether a cell is a multiplexer of these bits, which have no name and one reader."""
+        if cell.kind != "$mux" or cell.outputs["Y"] != bits or bits not in self.hidden:
+            return False
+        return all(self.reads[bit] == 1 for bit in bits)
+
+    def _value(self, bits: BitVector) -> str:
+        """A word, or the operation of one bit that stands in its place."""
+        inner = self.drivers.get(bits[0])
+        return render(self._tree(inner)) if inner is not None and self._inlined(inner) else self._word(bits)
+
+    def _memory_read(self, cell: Cell, net: str) -> Statement:
+        if not cell.number("CLK_ENABLE") or set(cell.inputs["SRST"]) | set(cell.inputs["ARST"]) != {"0"}:
+            raise self._refused(cell, "that is read without a clock, or whose output is reset")
+        if "1" in cell.parameters["TRANSPARENCY_MASK"]:
+            raise self._refused(cell, "whose reads see what is written at the same time")
+        if not self._ports(cell, MEMORY_WRITE):
+            raise self._refused(cell, "that nothing writes")
+        memory = self.names.memories[cell.memory]
+        text = f"{net} <= {memory}[{self._word(cell.inputs['ADDR'])}];"
+        return self._enabled(cell, (net,), text, frozenset({memory}))
+
+    def _memory_write(self, cell: Cell) -> Statement:
+        if len(self._ports(cell, MEMORY_WRITE)) > 1 or len(set(cell.inputs["EN"])) > 1:
+            raise self._refused(cell, "that is written in several places, or in parts")
+        contents = self._ports(cell, MEMORY_CONTENTS)
+        if any(set(port.inputs["DATA"]) != {"0"} for port in contents):
+            raise self._refused(cell, "that is not empty at first")
+        memory = self.names.memories[cell.memory]
+        address, data = self._word(cell.inputs["ADDR"]), self._word(cell.inputs["DATA"])
+        statement = self._enabled(cell, (memory,), f"{memory}[{address}] <= {data};", frozenset())
+        kind = self.module.memories[cell.memory]
+        initial = 0 if contents else None
+        return replace(statement, words=kind.words, initial=initial, marks=_marks(kind.attributes))
+
+    def _ports(self, of: Cell, kind: str) -> list[Cell]:
+        """The cells of a kind that belong to the memory of a cell."""
+        return [cell for cell in self.module.cells if cell.kind == kind and cell.memory == of.memory]
+
+    def _refused(self, cell: Cell, what: str) -> NotImplementedError:
+        return NotImplementedError(
+            f"{self.module.name} has a memory {cell.memory} {what}, for which there is no Verilog"
+        )
+
+    def _enabled(self, cell: Cell, drives: tuple[str, ...], text: str, reads: frozenset[str]) -> Statement:
+        """What a memory's port does at an edge."""
+        enable = cell.inputs["EN"][:1]
+        text = text if enable == ("1",) else f"if ({self._value(enable)}) {text}"
+        clock = self._edge(cell)
+        return Statement(drives, reads | self.read_nets, text, clock=clock)
+
+    def _edge(self, cell: Cell) -> str:
+        edge = "posedge" if cell.number("CLK_POLARITY") else "negedge"
+        return f"{edge} {self._word(cell.inputs['CLK'])}"
 
     def _instance(self, cell: Cell) -> Statement:
         parameters = ", ".join(
@@ -197,6 +289,10 @@ class _Translation:
         marks = _marks(cell.attributes)
         head = f"{marks}{cell.kind}{f' #({parameters})' if parameters else ''} {self.names.instances[cell]}"
         return Statement(tuple(driven), frozenset(self.read_nets), ", ".join(pins), head=head)
+
+
+def _opposite(condition: str) -> str:
+    return f"!{condition}" if condition.isidentifier() else f"!({condition})"
 
 
 def _marks(attributes: Mapping[str, str]) -> str:

@@ -4,11 +4,10 @@ from collections.abc import Mapping, Sequence
 
 from amaranth.back import rtlil
 from amaranth.hdl import ClockDomain, Fragment
-from amaranth.lib.wiring import Component
 
 from hdl_templates.hierarchy import Emission, Part
 from wnn2hdl.emit.expression import constant, range_of
-from wnn2hdl.emit.netlist import Module, read_modules
+from wnn2hdl.emit.netlist import Module, read_modules, trimmed
 from wnn2hdl.emit.packing import packed
 from wnn2hdl.emit.statements import UNUSED, Statement, statements
 
@@ -50,18 +49,17 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
         )
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header)
     return "\n".join(
-        [comment + LINT, *(_module(inner, packed(modules[name])) for name, inner in parts.items())]
+        [comment + LINT, *(_module(inner, packed(trimmed(modules[name]))) for name, inner in parts.items())]
     )
 
 
-def _rtlil(component: Component, name: str, emission: Emission) -> str:
-    text: str = rtlil.convert(
-        component,
-        name=name,
-        platform=emission,
-        emit_src=False,
-        missing_domain=lambda domain: ClockDomain(domain, reset_less=True),
-    )
+def _rtlil(part: Part, name: str, emission: Emission) -> str:
+    def missing(domain: str) -> ClockDomain:
+        made = ClockDomain(domain, reset_less=True)
+        made.clk.name = part.clock
+        return made
+
+    text: str = rtlil.convert(part, name=name, platform=emission, emit_src=False, missing_domain=missing)
     return text
 
 
@@ -87,17 +85,28 @@ def _text(module: Module) -> str:
         (statement for statement in found if not statement.clock),
         key=lambda statement: (UNUSED in statement.drives, levels[statement.drives[0]]),
     )
-    lines = [
-        f"    {register.marks}reg {range_of(widths[net])}{net};"
-        for net, register in registers.items()
-        if net not in module.outputs
-    ]
+    lines = [_register(registers[net], net, widths) for net in registers if net not in module.outputs]
     lines += [_line(statement, widths, module) for statement in ordered]
     for net, register in registers.items():
         if register.initial is not None:
-            lines.append(f"    initial {net} = {constant(register.initial, widths[net])};")
-        lines.append(_wrapped(f"    always @({register.clock}) {net} <= ", register.text))
+            lines += _initial(register, net, widths)
+        lines.append(_wrapped(f"    always @({register.clock}) ", register.text))
     return "\n".join([f"module {module.name} (", ",\n".join(ports), ");", *lines, "endmodule"]) + "\n"
+
+
+def _register(register: Statement, net: str, widths: Mapping[str, int]) -> str:
+    words = f" [0:{register.words - 1}]" if register.words else ""
+    return f"    {register.marks}reg {range_of(widths[net])}{net}{words};"
+
+
+def _initial(register: Statement, net: str, widths: Mapping[str, int]) -> list[str]:
+    assert register.initial is not None
+    value = constant(register.initial, widths[net])
+    if not register.words:
+        return [f"    initial {net} = {value};"]
+    count = f"{net}_word"
+    loop = f"for ({count} = 0; {count} < {register.words}; {count} = {count} + 1)"
+    return [f"    integer {count};", f"    initial {loop} {net}[{count}] = {value};"]
 
 
 def _line(statement: Statement, widths: Mapping[str, int], module: Module) -> str:
@@ -105,10 +114,10 @@ def _line(statement: Statement, widths: Mapping[str, int], module: Module) -> st
         declared = [
             f"    wire {range_of(widths[net])}{net};" for net in statement.drives if net not in module.outputs
         ]
-        return "\n".join([*declared, _wrapped(f"    {statement.head} (", f"{statement.text})")])
+        return "\n".join([*declared, _wrapped(f"    {statement.head} (", f"{statement.text});")])
     (net,) = statement.drives
     start = "assign " if net in module.outputs else f"wire {range_of(widths[net])}"
-    return _wrapped(f"    {start}{net} = ", statement.text)
+    return _wrapped(f"    {start}{net} = ", f"{statement.text};")
 
 
 def _levels(found: Sequence[Statement]) -> dict[str, int]:
@@ -130,7 +139,7 @@ def _levels(found: Sequence[Statement]) -> dict[str, int]:
 
 
 def _wrapped(start: str, rest: str) -> str:
-    """A statement with its semicolon, broken before operators and after commas where it is too long."""
+    """A statement, broken before operators and after commas where it is too long."""
     chunks: list[str] = []
     for word in rest.split(" "):
         if chunks and chunks[-1] in ("&", "|", "^", "?", ":"):
@@ -144,4 +153,4 @@ def _wrapped(start: str, rest: str) -> str:
             line = " " * 8 + chunk
         else:
             line += f" {chunk}"
-    return "\n".join([*lines, f"{line};"])
+    return "\n".join([*lines, line])

@@ -20,6 +20,7 @@ from wnn2hdl.ir.network import (
 from wnn2hdl.ir.pixel_bits import CHANNELS, COLOURS, PIXEL_BIT_NAMES, PIXEL_BITS, BitSelect
 from wnn2hdl.ir.relational import Comparison, PixelEncoder, Relational
 from wnn2hdl.ir.tables import TruthTable, pack_contents, unpack_contents
+from wnn2hdl.ir.video import VideoFormat
 from wnn2hdl.ir.window import CENTRE, WINDOW_BITS, WINDOW_CODES, EdgeFilter, window_codes
 
 __all__ = [
@@ -56,6 +57,7 @@ __all__ = [
     "Term",
     "Thermometer",
     "TruthTable",
+    "VideoFormat",
     "WisardModel",
     "Words",
     "all_codes",

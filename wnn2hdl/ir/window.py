@@ -34,6 +34,18 @@ def window_codes(image: ArrayLike) -> NDArray[np.int64]:
     return np.asarray(np.tensordot(windows.astype(np.int64), weights, axes=2))
 
 
+def framed_window_codes(image: ArrayLike) -> NDArray[np.int64]:
+    """The code of the window around every pixel; beyond the image its nearest pixel is repeated.
+
+    Args:
+        image: bool ``[height, width]``.
+
+    Returns:
+        int64 ``[height, width]``.
+    """
+    return window_codes(np.pad(np.asarray(image, dtype=np.bool_), SIDE // 2, mode="edge"))
+
+
 @dataclass(frozen=True, eq=False)
 class EdgeFilter:
     """The 3x3 edge filter: a RAM of 512 one-bit words that holds the patterns taken for an edge.

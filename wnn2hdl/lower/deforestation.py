@@ -139,6 +139,26 @@ def block_match(block_circuit: Circuit, match_circuit: Circuit) -> Circuit:
     )
 
 
+def video(pixel_circuit: Circuit, edge_circuit: Circuit | None) -> Circuit:
+    """What a video core computes between its registers: a pixel's class, and the edge bit of a window.
+
+    The two have nothing in common here: memories that a circuit cannot have lie between them.
+
+    Args:
+        pixel_circuit: the pixel classifier.
+        edge_circuit: the edge filter; None in a core that sends no edges.
+    """
+    rgb, bits = Port("rgb", PIXEL_BITS), Port("bits", WINDOW_BITS)
+    nodes = [Instance("classifier", pixel_circuit, {"rgb": rgb.word})]
+    inputs = [rgb]
+    if edge_circuit is not None:
+        nodes.append(Instance("window", edge_circuit, {"bits": bits.word}))
+        inputs.append(bits)
+    drivers = {port.name: _all(node) for node in nodes for port in node.circuit.outputs}
+    summary = "The circuits of a video core."
+    return Circuit("video", summary, tuple(inputs), tuple(nodes), drivers)
+
+
 def neighbourhood(model: WisardModel, encoder: Neighbourhood, care: CareSet) -> Circuit:
     """The classifier of a pixel and its neighbours: ``window`` to ``class_bits``.
 

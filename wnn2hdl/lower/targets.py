@@ -10,6 +10,7 @@ from wnn2hdl.ir import (
     Neighbourhood,
     PixelEncoder,
     Thermometer,
+    VideoFormat,
     WisardModel,
     Words,
     picture_encoder,
@@ -17,6 +18,7 @@ from wnn2hdl.ir import (
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.models import AnyModel, TableSumModel, VotingModel
+from wnn2hdl.ir.video import MAX_CLASSES
 from wnn2hdl.lower import deforestation, structural, sums
 
 
@@ -28,11 +30,13 @@ class Ingredients:
         model: the model.
         edges: the edge filter; None for targets that have none.
         care: the care sets of circuits by name; where one is missing, everything matters.
+        video: the streams of a video core; None for other targets.
     """
 
     model: AnyModel
     edges: EdgeFilter | None = None
     care: Mapping[str, CareSet] | None = None
+    video: VideoFormat | None = None
 
     def cared(self, name: str, width: int) -> CareSet:
         """The care set of a circuit whose code has ``width`` bits."""
@@ -50,6 +54,7 @@ class Target:
         fits: whether a model can be compiled to it.
         has_edges: whether the circuit contains the edge filter.
         classifies: whether it answers with classes of pixels.
+        streams: whether it is a video core, whose circuits stand between registers and memories.
     """
 
     name: str
@@ -58,6 +63,7 @@ class Target:
     fits: Callable[[AnyModel], bool]
     has_edges: bool = False
     classifies: bool = True
+    streams: bool = False
 
 
 def _pixel(of: Ingredients) -> Circuit:
@@ -73,6 +79,14 @@ def _edge(of: Ingredients) -> Circuit:
 def _block(of: Ingredients) -> Circuit:
     block = deforestation.block(_pixel(of), _edge(of))
     return deforestation.block_match(block, deforestation.match())
+
+
+def _video(of: Ingredients) -> Circuit:
+    assert of.video is not None
+    model = _wisard(of)
+    if len(model.classes) > MAX_CLASSES:
+        raise InputError(f"a video core has at most {MAX_CLASSES} classes", value=len(model.classes))
+    return deforestation.video(_pixel(of), _edge(of) if of.video.has_edges else None)
 
 
 def _neighbourhood(of: Ingredients) -> Circuit:
@@ -134,6 +148,14 @@ TARGETS: Mapping[str, Target] = {
             "A classifier of a pixel that looks at its neighbours",
             _neighbourhood,
             _reads_neighbours,
+        ),
+        Target(
+            "video",
+            "A video core: pixel classifier, line buffers and edge filter between two AXI4-Streams",
+            _video,
+            _reads_pixels,
+            has_edges=True,
+            streams=True,
         ),
         Target(
             "network",

@@ -21,7 +21,7 @@ from wnn2hdl.verify.specification import Claim, Samples
 
 CompiledSimulator = Literal["verilator", "icarus"]
 
-_RUN: dict[CompiledSimulator, Callable[..., Completed]] = {"verilator": run_verilator, "icarus": run_icarus}
+RUN: dict[CompiledSimulator, Callable[..., Completed]] = {"verilator": run_verilator, "icarus": run_icarus}
 
 _UNKNOWN = 255
 _DIGITS = np.full(256, _UNKNOWN, dtype=np.uint8)
@@ -64,7 +64,7 @@ def run_compiled(
         bench.write_text(_testbench(claim, module, latency), encoding="utf-8")
         columns = [_to_bytes(inputs[port]) for port in claim.inputs]
         np.concatenate(columns, axis=1).tofile(folder / "inputs.bin")
-        seconds = _RUN[simulator]([bench, *sources], "drive", cwd=folder, timeout=timeout).seconds
+        seconds = RUN[simulator]([bench, *sources], "drive", cwd=folder, timeout=timeout).seconds
         text = np.fromfile(folder / "outputs.hex", dtype=np.uint8)
     widths = {port: _digits(width) for port, width in claim.outputs.items()}
     if len(text) != samples * sum(widths.values()):

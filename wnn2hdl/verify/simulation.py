@@ -1,7 +1,8 @@
 """Simulation of a component in Amaranth's simulator, compared with the model's answers vector by vector."""
 
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -131,10 +132,17 @@ def _simulator(component: Part) -> Simulator:
 
 def _record(component: Part, bench: Bench, path: Path) -> None:
     simulator = _simulator(component)
+    with recorded(simulator, path):
+        simulator.add_testbench(bench)
+        simulator.run()
+
+
+@contextmanager
+def recorded(simulator: Simulator, path: Path) -> Iterator[None]:
+    """Record the waves of what a simulator does meanwhile; raises InputError if they cannot be written."""
     try:
         with path.open("w", encoding="utf-8") as stream, simulator.write_vcd(stream):
-            simulator.add_testbench(bench)
-            simulator.run()
+            yield
     except OSError as error:
         raise InputError(
             "cannot record the waves",

@@ -81,7 +81,7 @@ def foreign(data: dict[str, Any]) -> None:
         (beyond, "the design is damaged"),
         (twisted, "the design is damaged"),
         (aimed, "the model cannot be the target neighbourhood"),
-        (unknown, "nothing is known about the circuit sobel"),
+        (unknown, "nothing is known about the circuits .*sobel"),
         (exact, "pixel has don't-cares in exact mode"),
         (commented, "is not a line of a comment"),
         (newer, "not a design of this wnn2hdl"),

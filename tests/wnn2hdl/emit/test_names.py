@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import pytest
 
-from wnn2hdl.emit.names import Names, count_reads
-from wnn2hdl.emit.netlist import Cell, Module, Net
+from wnn2hdl.emit.names import Names
+from wnn2hdl.emit.netlist import Cell, Module, Net, count_reads
 
 RGB = tuple(range(2, 10))
 

@@ -234,7 +234,7 @@ class Remembering(Part):
         return m
 
 
-def test_a_memory_is_refused() -> None:
+def test_a_memory_that_nothing_writes_is_refused() -> None:
     with pytest.raises(NotImplementedError, match="for which there is no Verilog"):
         verilog(Remembering(), prefix="my_", header=[])
 

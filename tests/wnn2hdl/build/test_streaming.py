@@ -1,0 +1,140 @@
+"""Video cores: compiled, checked, and a picture through them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.planning import CompileOptions, plan
+from wnn2hdl.build.playback import play
+from wnn2hdl.build.streaming import framed_answers, sample_frames
+from wnn2hdl.build.verification import open_build, verify_build
+from wnn2hdl.elaborate import video_core
+from wnn2hdl.emit import stream_testbench, stream_vectors
+from wnn2hdl.errors import CheckError, InputError, ToolError
+from wnn2hdl.images import read_rgb, write_png
+from wnn2hdl.ir import WisardModel, window_codes
+from wnn2hdl.ir.video import Beats
+from wnn2hdl.tools import run_icarus
+from wnn2hdl.verify.stream import run_stream, simulate_stream
+from wnn2hdl.wisard import PixelClassifier
+
+
+def silent(step: str, done: int, total: int) -> None:
+    pass
+
+
+@pytest.fixture(scope="module")
+def video(model: WisardModel, imagery: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A video core in domain mode, compiled once."""
+    folder = tmp_path_factory.mktemp("builds") / "video"
+    options = CompileOptions(target="video", mode="domain", care=imagery, max_width=70)
+    assert compile_model(model, folder, options, silent).failure is None
+    return folder
+
+
+def test_the_report_counts_the_core_with_its_buffers_beside_its_circuits(video: Path) -> None:
+    _, _, report = open_build(video)
+    parts = report["parts"]
+    assert list(parts) == ["pixel", "edge", "video", "sobel"]
+    assert parts["video"]["bram36"] == 0.5
+    assert parts["video"]["ffs"] > 0
+    assert "simulated" in report["proof"]["method"]
+    assert report["options"]["simulated_vectors"]["video"] > 500
+
+
+def test_a_build_of_a_core_passes_its_checks_again(video: Path) -> None:
+    problems, checked = verify_build(video, silent)
+    assert not problems
+    assert checked is not None
+    assert checked.status == "proved"
+
+
+@pytest.mark.simulator
+def test_the_testbench_passes_and_finds_a_border_of_zeros(video: Path, tmp_path: Path) -> None:
+    _, files, _ = open_build(video)
+    (tmp_path / files.vectors.name).write_text(files.vectors.read_text())
+    sources = [files.cells, files.verilog, files.testbench]
+    top = files.testbench.stem
+    assert "PASS" in run_icarus(sources, top, cwd=tmp_path, timeout=60).output
+    text = files.verilog.read_text()
+    wrong = text.replace("if (line_starts) right <= newest", "if (line_starts) right <= 3'h0")
+    assert wrong != text
+    (tmp_path / "wrong.v").write_text(wrong)
+    with pytest.raises(ToolError) as failed:
+        run_icarus([files.cells, tmp_path / "wrong.v", files.testbench], top, cwd=tmp_path, timeout=60)
+    assert "FAIL" in failed.value.output
+
+
+@pytest.mark.simulator
+def test_a_picture_passes_as_a_frame_and_its_inner_edges_are_those_of_windows(
+    video: Path, model: WisardModel, imagery: Path
+) -> None:
+    picture = imagery / "7.png"
+    result = play(video, picture, "icarus", silent)
+    classes = PixelClassifier(model).classify(read_rgb(picture))
+    design = open_build(video)[0]
+    assert result.windows == 64 * 64
+    assert result.cared == 1.0
+    assert np.array_equal(result.foreground, classes != 0)
+    assert result.edges is not None
+    assert result.frame is not None
+    assert np.array_equal(result.frame & 127, classes)
+    assert np.array_equal(result.frame >> 7, result.edges)
+    assert design.edges is not None
+    inner = design.edges.evaluate(window_codes(classes != 0))
+    assert np.array_equal(result.edges[1:-1, 1:-1], inner)
+
+
+def test_the_waves_of_a_small_picture_are_recorded(video: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "small.png"
+    write_png(picture, np.random.default_rng(0).integers(0, 256, (5, 6, 3), dtype=np.uint8))
+    assert play(video, picture, "amaranth", silent, tmp_path / "waves.vcd").windows == 30
+    assert "m_axis_video_tvalid" in (tmp_path / "waves.vcd").read_text()
+
+
+def test_a_picture_wider_than_the_lines_is_refused(video: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "wide.png"
+    write_png(picture, np.zeros((2, 71, 3), dtype=np.uint8))
+    with pytest.raises(InputError, match="larger than the frames"):
+        play(video, picture, "icarus", silent)
+
+
+@pytest.mark.simulator
+def test_a_wrong_answer_is_found_in_icarus(video: Path) -> None:
+    design, files, _ = open_build(video)
+    beats = sample_frames(design)
+    wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
+    with pytest.raises(CheckError, match="icarus disagrees"):
+        run_stream(wrong, design.module("video"), files.simulated, "icarus", told=True)
+
+
+def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
+    design, _, _ = open_build(video)
+    assert design.video is not None
+    beats = sample_frames(design)
+    wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
+    with pytest.raises(CheckError, match="at beat 0"):
+        simulate_stream(video_core(design.circuit, design.video, style=design.style), wrong)
+    endless = Beats(beats.pixels, beats.answers, beats.starts, beats.ends, beats.height + 1)
+    with pytest.raises(CheckError, match="stops after"):
+        simulate_stream(video_core(design.circuit, design.video, style=design.style), endless)
+
+
+def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
+    options = CompileOptions(target="video", answer="class")
+    design = plan(model, "mine", options, silent).design
+    assert design.edges is None
+    assert list(design.parts) == ["pixel"]
+    pixels = np.random.default_rng(0).integers(0, 256, (3, 4, 3), dtype=np.uint8)
+    assert framed_answers(design, pixels)[1] is None
+
+
+def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
+    frame = np.array([[0xABCDEF, 1]], dtype=np.uint32)
+    beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)])
+    assert stream_vectors(beats) == "280abcdef\n101000001\n"
+    text = stream_testbench(name="x", count=2, height=None, vectors_file="x.hex", sources=["x.v"])
+    assert "reg [33:0] vectors [0:1];" in text
+    assert "height" not in text

@@ -1,0 +1,124 @@
+"""A testbench of a video core that checks itself against the model's answers, in plain Verilog-2001."""
+
+from collections.abc import Sequence
+
+from wnn2hdl.ir import PIXEL_BITS
+from wnn2hdl.ir.video import ANSWER_BITS, Beats
+
+_PATIENCE = 1 << 14
+"""Cycles without a beat that show a core that is stuck: longer than two lines take."""
+
+
+def stream_vectors(beats: Beats) -> str:
+    """Beats in the format of ``$readmemh``, a line each.
+
+    In the order of the bits from the highest: TUSER and TLAST, which are the same on both sides, the answer,
+    the pixel.
+    """
+    words = beats.pixels.astype(int) | beats.answers.astype(int) << PIXEL_BITS
+    marks = beats.starts.astype(int) << 1 | beats.ends
+    return "".join(f"{mark:x}{word:08x}\n" for mark, word in zip(marks, words, strict=True))
+
+
+def stream_testbench(
+    *, name: str, count: int, height: int | None, vectors_file: str, sources: Sequence[str]
+) -> str:
+    """A self-checking testbench ``NAME_tb`` for a video core ``NAME``.
+
+    Both sides pause at random, the same way in each run. It ends as the benches of
+    `wnn2hdl.emit.testbench.testbench` do.
+
+    Args:
+        name: the module of the core.
+        count: how many beats the file holds.
+        height: lines of the highest frame; None for a core that is not told.
+        vectors_file: name of the file with the `stream_vectors`, without a folder.
+        sources: names of the Verilog files of the core, for the comment that says how to run it.
+    """
+    files = " ".join([*sources, f"{name}_tb.v"])
+    told = "" if height is None else f"        .height(12'd{height % 4096}),\n"
+    word = PIXEL_BITS + ANSWER_BITS + 2
+    streams = ",\n".join(
+        f"        .{side}_axis_video_{signal}({side}_{signal})"
+        for side in "sm"
+        for signal in ("tdata", "tvalid", "tready", "tuser", "tlast")
+    )
+    return f"""\
+// Checks {name} against {count} answers of the model; run it in this folder,
+// with Icarus:    iverilog -o {name}_tb {files} && vvp -N {name}_tb
+// with Verilator: verilator --binary --top-module {name}_tb {files} && obj_dir/V{name}_tb
+module {name}_tb;
+    reg [{word - 1}:0] vectors [0:{count - 1}];
+    reg [{word - 1}:0] sending;
+    reg [{word - 1}:0] expected;
+    reg [31:0] random = 32'h1;
+    reg aclk = 1'b0;
+    reg aresetn = 1'b0;
+    reg s_tvalid = 1'b0;
+    reg m_tready = 1'b0;
+    reg taken, given;
+    integer sent, received, idle;
+    wire [{PIXEL_BITS - 1}:0] s_tdata = sending[{PIXEL_BITS - 1}:0];
+    wire s_tuser = sending[{word - 1}];
+    wire s_tlast = sending[{word - 2}];
+    wire s_tready;
+    wire [{ANSWER_BITS - 1}:0] m_tdata;
+    wire m_tvalid, m_tuser, m_tlast;
+
+    {name} dut (
+        .aclk(aclk),
+        .aresetn(aresetn),
+{told}{streams}
+    );
+
+    initial begin
+        $readmemh("{vectors_file}", vectors);
+        sent = 0;
+        received = 0;
+        idle = 0;
+        repeat (4) begin
+            #1 aclk = 1'b1;
+            #1 aclk = 1'b0;
+        end
+        aresetn = 1'b1;
+        while (received < {count} && idle < {_PATIENCE}) begin
+            // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
+            random = random ^ (random << 13);
+            random = random ^ (random >> 17);
+            random = random ^ (random << 5);
+            s_tvalid = s_tvalid || (sent < {count} && random[1:0] != 2'b00);
+            m_tready = random[9:8] != 2'b00;
+            sending = s_tvalid ? vectors[sent] : {{{word}{{1'bx}}}};
+            expected = vectors[received];
+            #1;
+            taken = s_tvalid && s_tready;
+            given = m_tvalid && m_tready;
+            // A beat with unknown bits was not read: the file is missing or too short.
+            if ((given && (^expected === 1'bx
+                || {{m_tuser, m_tlast, m_tdata}} !== expected[{word - 1}:{PIXEL_BITS}]))
+                || (^{{s_tready, m_tvalid}} === 1'bx)) begin
+                $display("FAIL: {name}, beat %0d of {count}", received);
+                $display("  tuser, tlast, tdata = %h, expected %h",
+                    {{m_tuser, m_tlast, m_tdata}}, expected[{word - 1}:{PIXEL_BITS}]);
+                $stop;
+                $finish;
+            end
+            #1 aclk = 1'b1;
+            #1 aclk = 1'b0;
+            if (taken) begin
+                sent = sent + 1;
+                s_tvalid = 1'b0;
+            end
+            if (given) received = received + 1;
+            idle = taken || given ? 0 : idle + 1;
+        end
+        if (received < {count}) begin
+            $display("FAIL: {name} stopped after %0d of {count} beats", received);
+            $stop;
+            $finish;
+        end
+        $display("PASS: {name}, {count} beats");
+        $finish;
+    end
+endmodule
+"""
