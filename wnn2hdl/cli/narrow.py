@@ -46,8 +46,9 @@ def narrow_command(
     other row alone, and judged on the rest.
 
     \b
-    Example:
-      wnn2hdl narrow model.json --table data.csv --label COLUMN --most-changed 0.002 -o narrow.json
+    Examples:
+      wnn2hdl narrow model.json --table data.csv --label class -o narrow.json
+      wnn2hdl narrow model.json --table test.npz --most-changed 0.002 -o narrow.json
     """
     if table is None:
         raise InputError("narrowing needs rows whose answers are compared", hint="give a table with --table")
