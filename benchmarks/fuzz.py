@@ -242,7 +242,7 @@ def _of_builds(folder: Path, model: WisardModel, options: CompileOptions) -> Ite
     def inspect() -> None:
         _, found = inspect_build(build)
         if found is not None:
-            false_statements(found[0], found[2], counted)
+            false_statements(found[0], found[2], counted, {"status": "proved"})
 
     def of_design() -> None:
         circuit_classifier(Design.load(build))

@@ -16,10 +16,20 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.equivalence import Circuit
-from wnn2hdl.verify.proof import Proof, method, prove, prove_netlists, sides
+from wnn2hdl.verify.proof import MODEL, Proof, Status, method, prove, prove_netlists, sides
+from wnn2hdl.verify.specification import Specification
 
 _MANY = 1 << 16
 """Vectors above which a circuit is simulated in its own process."""
+
+
+@dataclass(frozen=True)
+class ProvedClaim:
+    """What was to be proved of a part, and what came of it."""
+
+    part: str
+    statement: str
+    status: Status
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +44,9 @@ class Checked:
         proved_before: parts of which the same Verilog and the same netlist were proved before.
         method: what proved it.
         seconds: when each of the checks and syntheses, which run side by side, was done.
-        failure: why the circuit is not the model; None if it is.
+        claims: all that was to be proved of the Verilog, the pieces of a circuit ahead of it.
+        unproved: names of what a limit left unproved: parts, and ``PART netlist`` for a mapped netlist.
+        failure: why the circuit is not the model; None if no difference was found.
     """
 
     syntheses: Mapping[str, Synthesis]
@@ -44,12 +56,16 @@ class Checked:
     proved_before: tuple[str, ...]
     method: str
     seconds: Mapping[str, float]
+    claims: tuple[ProvedClaim, ...]
+    unproved: tuple[str, ...]
     failure: str | None
 
     @property
     def status(self) -> str:
-        """``proved`` or ``failed``."""
-        return "failed" if self.failure else "proved"
+        """``proved``, ``failed`` or ``UNPROVED``."""
+        if self.failure:
+            return "failed"
+        return "UNPROVED" if self.unproved else "proved"
 
 
 def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> Checked:
@@ -81,7 +97,10 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     )
     jobs: dict[str, Callable[[], Any]] = {**simulations.jobs, "synthesise": partial(synthesise_all, counted)}
     if verilog.due:
-        jobs["prove"] = partial(prove, specification, {part: claimed[part] for part in verilog.due})
+        pieces = specification.composition.pieces if specification.composition else {}
+        jobs["prove"] = partial(
+            prove, specification, {part: emitted[part] for part in (*pieces, *verilog.due)}
+        )
     names, results, seconds = list(jobs), dict[str, Any](), dict[str, float]()
     started = time.perf_counter()
     progress("simulating, proving, counting", 0, len(jobs))
@@ -113,6 +132,8 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         tuple(part for part in emitted if part not in {*verilog.due, *netlists.due}),
         method(specification),
         seconds,
+        _claims(specification, verilog.found),
+        (*_undecided(specification, verilog.found), *_undecided_netlists(netlists.found)),
         next((text for text in failures if text), None),
     )
 
@@ -209,8 +230,31 @@ class _Proofs:
         """Take the outcomes of what was due, and remember the successes."""
         self.found = found
         for part, proof in found.items():
-            if proof.counterexample is None:
+            if part in self.keys and proof.status == "proved":
                 remembered.remember(self.keys[part])
+
+
+def _claims(specification: Specification, found: Mapping[str, Proof]) -> tuple[ProvedClaim, ...]:
+    """All claims about a design; what was not proved now was proved before."""
+    pieces = specification.composition.pieces if specification.composition else {}
+    stated = {part: piece.statement for part, piece in pieces.items()}
+    stated |= dict.fromkeys(specification.claims, MODEL)
+    return tuple(
+        ProvedClaim(part, statement, found[part].status if part in found else "proved")
+        for part, statement in stated.items()
+    )
+
+
+def _undecided(specification: Specification, found: Mapping[str, Proof]) -> list[str]:
+    """The claims that are open, and of one that rests on pieces the pieces that are open."""
+    undecided = [part for part, proof in found.items() if proof.status == "undecided"]
+    claims = [part for part in undecided if part in specification.claims]
+    pieces = [part for part in undecided if part not in specification.claims]
+    return pieces if claims and pieces else claims
+
+
+def _undecided_netlists(found: Mapping[str, Proof]) -> list[str]:
+    return [f"{part} netlist" for part, proof in found.items() if proof.status == "undecided"]
 
 
 def _refutation(proofs: Mapping[str, Proof], what: str) -> str | None:

@@ -1,7 +1,7 @@
 """From a model to a build folder: plan, emit, check, count, report."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -111,6 +111,17 @@ def compile_model(
     return Build(folder, report, checked.failure)
 
 
+def require_proved(unproved: Sequence[str], allowed: Sequence[str]) -> None:
+    """Raise `CheckError` if a limit left anything unproved but what is allowed."""
+    left = [name for name in unproved if name not in allowed]
+    if left:
+        raise CheckError(
+            "a limit left parts UNPROVED",
+            value=", ".join(left),
+            hint="name with --allow-unproved what may stay so",
+        )
+
+
 def require_luts(build: Build, max_luts: int) -> None:
     """Raise `CheckError` if the build's target takes more than ``max_luts`` LUTs."""
     luts = build.report["parts"][build.report["target"]]["luts"]
@@ -157,7 +168,9 @@ def _report(
             method(design, checked),
             checked.proof_seconds,
             checked.failure,
-            before=checked.proved_before,
+            checked.proved_before,
+            tuple(map(asdict, checked.claims)),
+            checked.unproved,
         ),
         care=_care(design, measured.coverage),
         edges=edges,

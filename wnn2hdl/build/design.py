@@ -69,7 +69,7 @@ class Design:
     @cached_property
     def specification(self) -> Specification:
         """What every circuit of the design has to compute, stated by the model."""
-        return specify(self.model, self.edges, care_sets(self.circuit))
+        return specify(self.model, self.edges, care_sets(self.circuit), self.circuit)
 
     @property
     def picture_model(self) -> WisardModel:

@@ -96,9 +96,16 @@ def foreign_text(design: Design, report: Mapping[str, Any], folder: Path) -> lis
 
 
 def false_statements(
-    design: Design, report: Mapping[str, Any], syntheses: Mapping[str, Synthesis]
+    design: Design, report: Mapping[str, Any], syntheses: Mapping[str, Synthesis], proof: Mapping[str, Any]
 ) -> list[str]:
-    """What `report.json` says that is not so, one line each; what takes labelled pictures is left alone."""
+    """What `report.json` says that is not so, one line each; what takes labelled pictures is left alone.
+
+    Args:
+        design: the design.
+        report: the object of its `report.json`.
+        syntheses: what was counted again.
+        proof: what was proved again, as the report says it.
+    """
     care = None if design.care is None else design.care.project(tuple(range(design.care.width)))
     edges = design.edges
     found = {
@@ -117,7 +124,7 @@ def false_statements(
             "name": None if edges is None else edges.name,
             "patterns": None if edges is None else edges.size,
         },
-        "proof": {"status": "proved"},
+        "proof": proof,
         "model": {
             name: value for name, value in asdict(model_figures(design.model)).items() if name != "training"
         },

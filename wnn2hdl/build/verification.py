@@ -1,5 +1,6 @@
 """Checking a build again, from its files alone."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,12 @@ def verify_build(folder: Path, progress: Progress) -> tuple[list[str], Checked |
         return [*problems, error.line()], None
     if checked.failure is not None:
         problems.append(checked.failure)
-    return [*problems, *false_statements(design, report, checked.syntheses)], checked
+    proof = {
+        "status": checked.status,
+        "claims": list(map(asdict, checked.claims)),
+        "unproved": list(checked.unproved),
+    }
+    return [*problems, *false_statements(design, report, checked.syntheses, proof)], checked
 
 
 def inspect_build(folder: Path) -> tuple[list[str], tuple[Design, Files, dict[str, Any]] | None]:

@@ -5,12 +5,12 @@ from typing import Any, get_args
 
 import click
 
-from wnn2hdl.build.compile import compile_model, require_luts
+from wnn2hdl.build.compile import compile_model, require_luts, require_proved
 from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder, output_option
+from wnn2hdl.cli.options import allow_unproved_option, file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.cli.pictures import (
     MASKS,
@@ -45,6 +45,7 @@ SECTIONS = {
         "--style",
         "--effort",
         "--max-luts",
+        "--allow-unproved",
     ),
     "Edge filter": ("--edges", "--edge-images", "--edge-patterns", "--edge-luts"),
     "Pictures": ("--test-images", "--test-masks", *MASKS, *READING),
@@ -176,11 +177,13 @@ SECTIONS = {
 @click.option(
     "--max-luts", type=click.IntRange(min=0), metavar="N", help="Fail if the whole target takes more LUTs."
 )
+@allow_unproved_option
 @json_option
 def compile_command(
     model: Path,
     output: Path,
     max_luts: int | None,
+    allow_unproved: tuple[str, ...],
     as_json: bool,
     **choices: Any,
 ) -> None:
@@ -199,8 +202,11 @@ def compile_command(
         if share:
             option = pictures.replace("_", "-")
             lines.append(f"{share:.2%} of the pixels of --{option} left out: not labelled, or no data")
+    if unproved := build.report["proof"]["unproved"]:
+        lines.append(f"UNPROVED: {', '.join(unproved)}")
     emit(build.report, "\n".join(lines), as_json=as_json)
     if build.failure is not None:
         raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
+    require_proved(build.report["proof"]["unproved"], allow_unproved)
     if max_luts is not None:
         require_luts(build, max_luts)

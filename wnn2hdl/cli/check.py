@@ -8,10 +8,11 @@ import click
 import numpy as np
 
 from wnn2hdl.build.checking import synthesise_parts
+from wnn2hdl.build.compile import require_proved
 from wnn2hdl.build.playback import SimulatorName, play
 from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder, output_option
+from wnn2hdl.cli.options import allow_unproved_option, file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import reading_options
 from wnn2hdl.errors import CheckError
@@ -24,8 +25,9 @@ build_argument = click.argument("build", type=folder)
 
 @app.command("verify")
 @build_argument
+@allow_unproved_option
 @json_option
-def verify_command(build: Path, as_json: bool) -> None:
+def verify_command(build: Path, allow_unproved: tuple[str, ...], as_json: bool) -> None:
     """Check BUILD from its files alone: hashes, simulation, proof, LUT counts.
 
     \b
@@ -41,13 +43,22 @@ def verify_command(build: Path, as_json: bool) -> None:
         "problems": problems,
         "proof": None
         if checked is None
-        else {"status": checked.status, "method": checked.method, "seconds": checked.proof_seconds},
+        else {
+            "status": checked.status,
+            "method": checked.method,
+            "seconds": checked.proof_seconds,
+            "claims": list(map(asdict, checked.claims)),
+            "unproved": list(checked.unproved),
+        },
         "vectors": {} if checked is None else dict(checked.vectors),
     }
-    text = f"{build}: files unchanged, simulated, proved, counted" if not problems else "\n".join(problems)
+    unproved = () if checked is None else checked.unproved
+    proved = f"UNPROVED ({', '.join(unproved)})" if unproved else "proved"
+    text = f"{build}: files unchanged, simulated, {proved}, counted" if not problems else "\n".join(problems)
     emit(data, text, as_json=as_json)
     if problems:
         raise CheckError(f"{build} does not pass its checks", value=problems[0])
+    require_proved(unproved, allow_unproved)
 
 
 @app.command("simulate")

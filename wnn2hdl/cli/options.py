@@ -31,6 +31,12 @@ bits_option = click.option(
     metavar="R7,R6,...",
     help="Read these bits.  [default: the 4 high bits each]",
 )
+allow_unproved_option = click.option(
+    "--allow-unproved",
+    multiple=True,
+    metavar="PART",
+    help="Accept that a limit leaves this part unproved.",
+)
 share_option = click.option(
     "--share",
     type=FiniteRange(0, 1, min_open=True),

@@ -48,7 +48,7 @@ def divided(circuit: Circuit, carried: Mapping[int, Slice | bool]) -> Circuit:
     }
     nodes.append(Instance(WINNER, _winner(largest), words))
     ((output, word),) = circuit.drivers.items()
-    drivers = {output: (Slice(f"{WINNER}.index", 0, width_of(word)),)}
+    drivers = {output: (Slice(f"{WINNER}.class_bits", 0, width_of(word)),)}
     return Circuit(circuit.name, circuit.summary, circuit.inputs, tuple(nodes), drivers)
 
 
@@ -69,4 +69,4 @@ def _winner(node: ArgMax) -> Circuit:
     largest = ArgMax("largest", tuple(port.word for port in ports), node.tie)
     index = (Slice("largest", 0, largest.drives["largest"]),)
     summary = f"Index of the largest of {len(ports)} numbers."
-    return Circuit(WINNER, summary, ports, (largest,), {"index": index})
+    return Circuit(WINNER, summary, ports, (largest,), {"class_bits": index})

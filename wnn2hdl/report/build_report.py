@@ -59,12 +59,14 @@ class Proof:
     """How the emitted Verilog was checked against the model.
 
     Attributes:
-        status: ``proved``, ``simulated``, ``failed`` or ``not run``.
+        status: ``proved``, ``UNPROVED``, ``simulated``, ``failed`` or ``not run``.
         method: in words; None if it was not run.
         seconds: wall clock; None if it was not run.
         failure: an input on which circuit and model differ, in words; None if none was found.
         before: circuits that an earlier build proved, with the same Verilog and netlist, and this one did not
             prove again.
+        claims: all that was to be proved, with the part, the statement and the status of each.
+        unproved: what a limit left unproved.
     """
 
     status: str = "not run"
@@ -72,6 +74,8 @@ class Proof:
     seconds: float | None = None
     failure: str | None = None
     before: tuple[str, ...] = ()
+    claims: tuple[Mapping[str, str], ...] = ()
+    unproved: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

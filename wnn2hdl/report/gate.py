@@ -78,7 +78,8 @@ def _of_build(
     status, failure = report["proof"]["status"], report["proof"].get("failure")
     proved = status == "proved"
     text = "proved equal to the model" if proved else f"{status}, not proved equal to the model"
-    yield Check(name, "proof", proved, f"{text}: {failure}" if failure else text)
+    reason = failure or ", ".join(report["proof"].get("unproved", []))
+    yield Check(name, "proof", proved, f"{text}: {reason}" if reason else text)
     yield Check(name, "files", not changes, ", ".join(changes) or "as they were written")
     target = report["target"]
     if limits.max_luts is not None:

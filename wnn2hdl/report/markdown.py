@@ -90,9 +90,10 @@ def _proof(proof: Mapping[str, Any]) -> str:
     method = f" by {proof['method']}" if proof["method"] else ""
     seconds = f" in {proof['seconds']:.2f} s" if proof["seconds"] is not None else ""
     failure = f": {escaped(proof['failure'])}" if proof["failure"] else ""
+    unproved = f": {escaped(', '.join(proof['unproved']))}" if proof.get("unproved") else ""
     before = proof.get("before")
     earlier = f"; before, with the same Verilog and netlist: {', '.join(before)}" if before else ""
-    return f"{proof['status']}{method}{seconds}{failure}{earlier}"
+    return f"{proof['status']}{method}{seconds}{failure}{unproved}{earlier}"
 
 
 def _answers(report: Mapping[str, Any]) -> str:

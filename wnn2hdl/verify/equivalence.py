@@ -3,7 +3,7 @@
 Yosys turns each module into an and-inverter graph (AIGER) by ``proc``, ``techmap``, ``aigmap`` and
 ``flatten``; ABC builds the miter of two graphs and runs its combinational equivalence checker ``&cec`` on it:
 it simulates, guesses internal equivalences, proves or refutes each by SAT, merges, and ends with the outputs.
-An answer of "undecided" is an error here, never a yes.
+An answer of "undecided" is handed on, never taken for a yes.
 
 What is not a function of the inputs is refused: undriven, doubly driven and looped wires by ``check
 -assert``, registers of a combinational circuit by their count in the graph, latches by Yosys's AIGER writer;
@@ -21,6 +21,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.tools import find_yosys, run_abc
@@ -35,6 +36,9 @@ _EVALUATION_SECONDS = 60.0
 CLOCK = "clk"
 """The clock of circuits with registers."""
 
+TO_GATES = ("opt_expr", "techmap", "opt_expr", "aigmap")
+"""Commands that turn the logic of every module into ANDs and inverters."""
+
 # Enables and synchronous resets become logic; a falling edge becomes an inverter at the clock.
 _ONE_CLOCK = [
     "opt_clean",
@@ -45,8 +49,13 @@ _ONE_CLOCK = [
 ]
 _REGISTERS_AS_WIRES = "module \\$_DFF_P_ (input D, C, output Q); assign Q = D; endmodule\n"
 
-_CONFLICTS = 1_000_000
+CONFLICTS = 1_000_000
 """SAT conflicts allowed at a node; ABC's own limit of 1000 leaves some equal circuits undecided."""
+
+UNDECIDED: Literal["undecided"] = "undecided"
+
+Difference = dict[str, int] | Literal["undecided"] | None
+"""Inputs on which two circuits differ, None if they are equal, or that it is not known."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +102,8 @@ class _Graph:
 
 
 def find_differences(
-    pairs: Sequence[tuple[Circuit, Circuit]], *, timeout: float
-) -> list[dict[str, int] | None]:
+    pairs: Sequence[tuple[Circuit, Circuit]], *, timeout: float, conflicts: int = CONFLICTS, nodes: int = 0
+) -> list[Difference]:
     """For each pair, an input on which the two circuits differ.
 
     All pairs share one process of Yosys and one of ABC, and each circuit is read once.
@@ -102,9 +111,12 @@ def find_differences(
     Args:
         pairs: circuits with equal ports.
         timeout: seconds for each of the two processes.
+        conflicts: how many conflicts SAT may run into at a node.
+        nodes: of a binary decision diagram that is tried before SAT; none is where this is 0.
 
     Returns:
-        For each pair the values of the input ports, or None where the circuits are equal on every input.
+        For each pair the values of the input ports, None where the circuits are equal on every input, or
+        `UNDECIDED` where it took more conflicts.
 
     Raises:
         CheckError: a combinational circuit has registers, or a circuit reads undefined values: it is no
@@ -116,7 +128,7 @@ def find_differences(
         circuits = list(dict.fromkeys(circuit for pair in pairs for circuit in pair))
         graphs = dict(zip(circuits, _write_graphs(circuits, folder, timeout), strict=True))
         numbers = {circuit: number for number, circuit in enumerate(circuits)}
-        script = []
+        script, equal = [], set[int]()
         for number, (left, right) in enumerate(pairs):
             if not graphs[left].fits(graphs[right]):
                 raise ToolError("two circuits to compare have different ports", value=(left.top, right.top))
@@ -127,14 +139,20 @@ def find_differences(
                 for side, (name, more) in enumerate(zip(files, ((0, free[1]), (free[0], 0)), strict=True)):
                     files[side] = f"{number}_{side}.aig"
                     Aiger.read(folder / name).widened(shared, *more).write(folder / files[side])
+            if nodes and _same_diagram(files, nodes, folder, timeout):
+                equal.add(number)
+                continue
             # -n: by place, not by name, so that the counterexample's bits stand in the inputs' order.
-            script.append(f"miter -n {' '.join(files)}; &get; &cec -m -C {_CONFLICTS}")
+            script.append(f"miter -n {' '.join(files)}; &get; &cec -m -C {conflicts}")
             script.append(f"write_cex {number}.cex")
-        verdicts = _VERDICT.findall(run_abc("\n".join(script) + "\n", timeout=timeout, cwd=folder))
-        if len(verdicts) != len(pairs) or "UNDECIDED" in verdicts:
-            raise ToolError("ABC could not decide whether two circuits are equal", value=verdicts)
+        found = run_abc("\n".join(script) + "\n", timeout=timeout, cwd=folder) if script else ""
+        verdicts = _VERDICT.findall(found)
+        for number in sorted(equal):
+            verdicts.insert(number, "equivalent")
+        if len(verdicts) != len(pairs):
+            raise ToolError("ABC did not say whether two circuits are equal", value=verdicts)
         return [
-            None if verdict == "equivalent" else _read_counterexample(folder / f"{number}.cex", graphs[left])
+            _difference(verdict, folder / f"{number}.cex", graphs[left])
             for number, (verdict, (left, _)) in enumerate(zip(verdicts, pairs, strict=True))
         ]
 
@@ -156,7 +174,7 @@ def evaluate(
     settings = " ".join(f"-set {port} {widths[port]}'h{value:x}" for port, value in inputs.items())
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
-        script = [*_read_cells([circuit]), *_read(circuit, 0, folder), "flatten", "opt_clean"]
+        script = [*read_cells([circuit]), *read(circuit, 0, folder), "flatten", "opt_clean"]
         if circuit.latency:
             (folder / "wires.v").write_text(_REGISTERS_AS_WIRES, encoding="utf-8")
             script += [
@@ -176,14 +194,13 @@ def evaluate(
 
 def _write_graphs(circuits: Sequence[Circuit], folder: Path, timeout: float) -> list[_Graph]:
     """Write the graph of circuit ``i`` to ``i.aig``; return their ports."""
-    script = _read_cells(circuits)
+    script = read_cells(circuits)
     for number, circuit in enumerate(circuits):
-        script += _read(circuit, number, folder)
+        script += read(circuit, number, folder)
         # Mapping each module once, and merging its equal gates, before it is flattened into its nine
         # instances is what makes this quick: flattening takes the longest, a time for each gate.
-        script += ["check -assert", "setundef -anyseq", "opt_expr", "techmap", "opt_expr", "aigmap"]
-        script += ["opt_merge", "opt_clean", "rename -hide", "flatten -noscopeinfo"]
-        script += _ONE_CLOCK if circuit.latency else []
+        script += ["check -assert", "setundef -anyseq", *TO_GATES]
+        script += ["opt_merge", "opt_clean", "rename -hide", "flatten -noscopeinfo", *one_clock(circuit)]
         script += [f"write_aiger -map {number}.map {number}.aig"]
     find_yosys().run("\n".join(script) + "\n", timeout=timeout, cwd=folder)
     graphs = [
@@ -207,8 +224,19 @@ def _unrolled(path: Path, graph: _Graph, cycles: int) -> _Graph:
     return replace(graph, inputs=inputs, free=aiger.inputs - len(first))
 
 
-def _read(circuit: Circuit, number: int, folder: Path) -> list[str]:
-    """Write the sources and return the commands that read them into an empty design."""
+def one_clock(circuit: Circuit) -> list[str]:
+    """Commands that turn all registers of a flattened pipeline into ones at the rising edge of `CLOCK`."""
+    return _ONE_CLOCK if circuit.latency else []
+
+
+def read(circuit: Circuit, number: int, folder: Path) -> list[str]:
+    """Write the sources and return the commands that read them into an empty design.
+
+    Args:
+        circuit: the circuit.
+        number: keeps the files of several circuits apart.
+        folder: where Yosys will run.
+    """
     script = ["design -reset", *(f"design -copy-from cells {cell}" for cell in sorted(_cells(circuit)))]
     for position, text in enumerate(circuit.sources):
         name = f"{number}_{position}.v"
@@ -218,8 +246,8 @@ def _read(circuit: Circuit, number: int, folder: Path) -> list[str]:
     return [*script, f"hierarchy -check -top {circuit.top}", "setattr -mod -unset keep_hierarchy *", "proc"]
 
 
-def _read_cells(circuits: Sequence[Circuit]) -> list[str]:
-    """Commands that keep the models of 7-series cells at hand, where they are needed."""
+def read_cells(circuits: Sequence[Circuit]) -> list[str]:
+    """Commands, ahead of `read`, that keep the models of 7-series cells at hand where they are needed."""
     needed = any(_cells(circuit) for circuit in circuits)
     return ["read_verilog +/xilinx/cells_sim.v", "design -stash cells"] if needed else []
 
@@ -243,7 +271,24 @@ def _checked(graph: Path, ports: Path, circuit: Circuit) -> _Graph:
     return _Graph(named["input"], named["output"], outputs)
 
 
-def _read_counterexample(path: Path, graph: _Graph) -> dict[str, int]:
+def _same_diagram(files: Sequence[str], nodes: int, folder: Path, timeout: float) -> bool:
+    """Whether the miter of two graphs is 0 as a binary decision diagram; False if that takes more nodes."""
+    # -r: without reordering, which takes long; the order in which the graph reads its inputs will do.
+    script = f"miter -n {' '.join(files)}; collapse -B {nodes} -r; strash; &get; &cec -m\n"
+    try:
+        found = _VERDICT.findall(run_abc(script, timeout=timeout, cwd=folder))
+    except ToolError as error:
+        if "Collapsing has failed" not in str(error):
+            raise
+        return False
+    return found == ["equivalent"]
+
+
+def _difference(verdict: str, path: Path, graph: _Graph) -> Difference:
+    if verdict == "equivalent":
+        return None
+    if verdict == "UNDECIDED":
+        return UNDECIDED
     bits = path.read_text(encoding="utf-8")
     values: dict[str, int] = {}
     for place, (port, bit) in graph.inputs.items():

@@ -22,11 +22,16 @@ Sums of many words are proved another way (`wnn2hdl.verify.addition`). A circuit
 their own is proved with the references of the pieces in their place: it is right if it is right with these.
 
 The care set is not empty (`wnn2hdl.verify.specification.flags_of` refuses that), so no claim holds vacuously.
+
+A network is proved piece by piece (`wnn2hdl.verify.composition` says why that is sound). Where a piece is not
+what is claimed of it, the network may still be the model: it is then compared as a whole.
 """
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Literal
 
 import numpy as np
 
@@ -34,11 +39,27 @@ from wnn2hdl.errors import ToolError
 from wnn2hdl.ir import PIXEL_BITS
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.verify.addition import Sums, answers, is_sum_of_tables
-from wnn2hdl.verify.equivalence import CLOCK, Circuit, evaluate, find_differences
+from wnn2hdl.verify.composition import Composition, wrong_wire
+from wnn2hdl.verify.counters import adds_up
+from wnn2hdl.verify.equivalence import (
+    CLOCK,
+    UNDECIDED,
+    Circuit,
+    Difference,
+    evaluate,
+    find_differences,
+)
 from wnn2hdl.verify.signals import read_signals
 from wnn2hdl.verify.specification import Claim, Specification, show, value_bits
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
+COUNTERS = "arithmetic over the truth tables of its counters"
+WIRING = "the claims of its pieces and its wiring, bit by bit"
+
+Status = Literal["proved", "refuted", "undecided"]
+
+MODEL = "the Verilog equals the model, on all inputs that are cared for"
+NETLIST = "the mapped netlist equals the Verilog, on all inputs"
 
 SUBSTITUTION = "substitution of signals by those they read, on all their values"
 
@@ -46,6 +67,10 @@ Widths = Mapping[str, int]
 """Width of each port by name, in bits."""
 
 _SECONDS = 600.0
+"""The last resort, which ends in an error: what is decided must not depend on how fast the machine is."""
+
+_CONFLICTS = 100_000
+_NODES = 200_000
 _HELD = "proof__held"
 
 
@@ -81,19 +106,18 @@ class Proof:
     """The outcome of a proof.
 
     Attributes:
+        statement: what was to be proved.
         method: what decided it.
         seconds: wall-clock time of the call that proved it, together with all that it proved beside it.
-        counterexample: None if the circuit is proved.
+        status: ``undecided`` where a limit was reached, or where a claim that it rests on is not proved.
+        counterexample: of a circuit that is refuted; None of a piece of one.
     """
 
+    statement: str
     method: str
     seconds: float
-    counterexample: Counterexample | None
-
-    @property
-    def status(self) -> str:
-        """``proved`` or ``refuted``."""
-        return "refuted" if self.counterexample else "proved"
+    status: Status
+    counterexample: Counterexample | None = None
 
 
 def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[str, Proof]:
@@ -101,39 +125,100 @@ def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[
 
     Args:
         specification: what the model answers, and where it matters.
-        emitted: the Verilog of each circuit to prove, by its part.
+        emitted: the Verilog of each circuit by its part; all that there are claims about are proved.
 
     Returns:
-        The outcome for each circuit.
+        The outcome for each circuit, and for the pieces of one that is proved piece by piece ahead of it.
 
     Raises:
         CheckError: a circuit has registers or reads undefined values.
         ToolError: a text cannot be read as a circuit with these ports, or a tool is missing or gave up.
     """
+    composition = specification.composition
+    if composition is not None and composition.part in emitted:
+        return _prove_pieces(specification, composition, emitted)
+    return _prove_whole(specification, emitted)
+
+
+def _prove_whole(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[str, Proof]:
     started = time.perf_counter()
-    claims = {part: specification.claims[part] for part in emitted}
-    counterexamples = {
-        part: _of_sums(claim, claim.sums, emitted[part])
-        for part, claim in claims.items()
-        if claim.sums is not None
-    }
-    compared = {part: claim for part, claim in claims.items() if claim.sums is None}
+    claims = {part: claim for part, claim in specification.claims.items() if part in emitted}
+    added = {part: claim.sums for part, claim in claims.items() if claim.sums is not None}
+    counterexamples = {part: _of_sums(claims[part], sums, emitted[part]) for part, sums in added.items()}
+    compared = {part: claim for part, claim in claims.items() if part not in added}
     pairs = [sides(specification, claim, emitted[part]) for part, claim in compared.items()]
     differences = find_differences(pairs, timeout=_SECONDS) if pairs else []
+    seconds = time.perf_counter() - started
+    proofs = {
+        part: Proof(MODEL, SUBSTITUTION, seconds, "refuted" if found else "proved", found)
+        for part, found in counterexamples.items()
+    }
     for (part, claim), values in zip(compared.items(), differences, strict=True):
         circuit = _with_references(specification, claim, emitted[part])
-        counterexamples[part] = None if values is None else _against_model(claim, circuit, values)
-    seconds = time.perf_counter() - started
-    return {
-        part: Proof(METHOD if part in compared else SUBSTITUTION, seconds, counterexamples[part])
-        for part in emitted
-    }
+        proofs[part] = _proof(MODEL, seconds, values, partial(_against_model, claim, circuit))
+    return {part: proofs[part] for part in claims}
 
 
 def method(specification: Specification) -> str:
     """What decides the claims of a specification."""
+    if specification.composition is not None:
+        return f"binary decision diagrams and {METHOD}, piece by piece; sums by {COUNTERS}"
     adds = any(claim.sums is not None for claim in specification.claims.values())
     return f"{METHOD}; sums by {SUBSTITUTION}" if adds else METHOD
+
+
+def _prove_pieces(
+    specification: Specification, composition: Composition, emitted: Mapping[str, Circuit]
+) -> dict[str, Proof]:
+    """The pieces of a circuit, its wiring, and with that the circuit."""
+    started = time.perf_counter()
+    pieces, proofs = composition.pieces, dict[str, Proof]()
+    statuses: dict[str, tuple[str, Status]] = {}
+    for part, piece in pieces.items():
+        sum_of = piece.addition
+        if sum_of and adds_up(emitted[part], "bits", sum_of.weights, sum_of.offset, "total"):
+            statuses[part] = (COUNTERS, "proved")
+    rest = [part for part in pieces if part not in statuses]
+    differences = find_differences(
+        [
+            (
+                pieces[part].framed(emitted[part], specification.reference),
+                Circuit((specification.reference,), pieces[part].module),
+            )
+            for part in rest
+        ],
+        timeout=_SECONDS,
+        conflicts=_CONFLICTS,
+        nodes=_NODES,
+    )
+    statuses |= {part: (METHOD, _status(values)) for part, values in zip(rest, differences, strict=True)}
+    whole = emitted[composition.part]
+    fault = wrong_wire(composition, whole, emitted)
+    seconds = time.perf_counter() - started
+    for part, piece in pieces.items():
+        decided_by, status = statuses[part]
+        proofs[part] = Proof(piece.statement, decided_by, seconds, status)
+    found = {status for _, status in statuses.values()}
+    if fault is not None or "refuted" in found:
+        return proofs | _prove_whole(specification, {composition.part: whole})
+    status = "undecided" if "undecided" in found else "proved"
+    return proofs | {composition.part: Proof(MODEL, WIRING, seconds, status)}
+
+
+def _status(difference: Difference) -> Status:
+    if difference is None:
+        return "proved"
+    return "undecided" if difference == UNDECIDED else "refuted"
+
+
+def _proof(
+    statement: str,
+    seconds: float,
+    difference: Difference,
+    counterexample: Callable[[Mapping[str, int]], Counterexample],
+) -> Proof:
+    found = counterexample(difference) if isinstance(difference, dict) else None
+    return Proof(statement, METHOD, seconds, _status(difference), found)
 
 
 def prove_netlists(
@@ -149,15 +234,17 @@ def prove_netlists(
     """
     started = time.perf_counter()
     differences = find_differences(list(netlists.values()), timeout=_SECONDS)
-    counterexamples: dict[str, Counterexample | None] = {}
-    for (part, (source, netlist)), values in zip(netlists.items(), differences, strict=True):
-        counterexamples[part] = None
-        if values is not None:
-            inputs, outputs = ports[part]
-            expected, actual = (evaluate(x, values, inputs, tuple(outputs)) for x in (source, netlist))
-            counterexamples[part] = Counterexample(part, values, expected, actual)
     seconds = time.perf_counter() - started
-    return {part: Proof(METHOD, seconds, found) for part, found in counterexamples.items()}
+
+    def counterexample(part: str, values: Mapping[str, int]) -> Counterexample:
+        inputs, outputs = ports[part]
+        expected, actual = (evaluate(x, values, inputs, tuple(outputs)) for x in netlists[part])
+        return Counterexample(part, values, expected, actual)
+
+    return {
+        part: _proof(NETLIST, seconds, values, partial(counterexample, part))
+        for part, values in zip(netlists, differences, strict=True)
+    }
 
 
 def sides(specification: Specification, claim: Claim, circuit: Circuit) -> tuple[Circuit, Circuit]:

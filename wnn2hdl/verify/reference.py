@@ -104,3 +104,10 @@ def class_bits(model: WisardModel | ClassifierModel) -> int:
 def plain_sum(bits: Sequence[str], width: int) -> str:
     """A plain sum of single bits, each extended to the width of the result."""
     return " + ".join(f"{{{width - 1}'d0, {bit}}}" if width > 1 else bit for bit in bits)
+
+
+def weighted_sum(bits: Sequence[str], weights: Sequence[int], offset: int) -> str:
+    """The sum of the weights of the bits that are set, and a constant, as wide as the largest sum."""
+    width = (sum(weights) + offset).bit_length()
+    terms = [f"({bit} ? {width}'d{weight} : {width}'d0)" for bit, weight in zip(bits, weights, strict=True)]
+    return " + ".join([*terms, f"{width}'d{offset}"])

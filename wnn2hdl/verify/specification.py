@@ -15,6 +15,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify.addition import Sums
+from wnn2hdl.verify.composition import Composition
 
 Samples = Mapping[str, Bits]
 """Values of ports by name, bool ``[samples, width]`` each."""
@@ -84,11 +85,13 @@ class Specification:
         claims: by circuit, innermost first.
         reference: Verilog of the reference modules.
         care: Verilog of the modules that know the care set.
+        composition: how a circuit that is proved piece by piece is made of its pieces.
     """
 
     claims: Mapping[str, Claim]
     reference: str
     care: str
+    composition: Composition | None = None
 
 
 def flags_of(care: CareSet, width: int, what: str) -> NDArray[np.bool_]:

@@ -14,19 +14,27 @@ from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.sums import sums_specification
 
 
-def specify(model: AnyModel, edges: EdgeFilter | None, care: Mapping[str, CareSet]) -> Specification:
+def specify(
+    model: AnyModel,
+    edges: EdgeFilter | None,
+    care: Mapping[str, CareSet],
+    circuit: Circuit | None = None,
+) -> Specification:
     """What the circuits made from a model have to compute.
 
     Args:
         model: the model.
         edges: the edge filter of the design, if it has one.
         care: the care sets of circuits by name; where one is missing, everything matters.
+        circuit: says which of its bits are which of the model's, so that it can be proved piece by piece;
+            without it a network is compared as a whole.
 
     Raises:
         InputError: the model reads no pixels, or a care set is empty.
+        ValueError: the circuit is not made of the pieces of the model's.
     """
     if isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words):
-        return network_specification(model)
+        return network_specification(model, circuit)
     if isinstance(model, TableSumModel) and isinstance(model.encoder, Words):
         return sums_specification(model)
     if not isinstance(model, WisardModel):

@@ -346,7 +346,7 @@ def reference(part: Part, name: str) -> str:
     return re.search(rf"^module {name}\(.*?^endmodule$", log, re.MULTILINE | re.DOTALL)[0]  # type: ignore[index]
 
 
-def differences(parts: Mapping[str, Callable[[], Part]]) -> dict[str, dict[str, int] | None]:
+def differences(parts: Mapping[str, Callable[[], Part]]) -> dict[str, equivalence.Difference]:
     """For each component an input on which its emitted text differs from Amaranth's drawing of it."""
     pairs = [
         (

@@ -47,6 +47,8 @@ def test_the_keys_that_others_rely_on() -> None:
         "seconds": 0.5,
         "failure": None,
         "before": (),
+        "claims": (),
+        "unproved": (),
     }
     assert report["care"] == {"codes": 120, "coverage": 0.98, "of": None}
     assert report["accuracy"] == 0.9

@@ -1,5 +1,6 @@
 """Only reports that the pages understand are let in."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ def test_every_report_that_is_written_fits(report: dict[str, Any]) -> None:
 
 def test_an_empty_report_fits() -> None:
     report = BuildReport("b", "block", "exact", {"block": PartFigures()})
-    check_report(report_dict(report), Path("report.json"))
+    check_report(json.loads(json.dumps(report_dict(report))), Path("report.json"))
 
 
 @pytest.mark.parametrize("key", ["version", "name", "parts", "proof", "edges", "published"])

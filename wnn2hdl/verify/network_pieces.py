@@ -1,0 +1,197 @@
+"""What the pieces of a network have to compute, and why they make the model.
+
+The pieces are an encoder, tables, a sum for each class and a winner. A circuit drops tables that are
+constant, lets equal tables be one, and makes only those bits of the encoder that it reads. Which of its
+bits are which of the model's it says itself (`wnn2hdl.ir.circuit.Circuit.carries`); that is a hint, and
+part of what is proved:
+
+- encoder: for all features, each bit is the model's bit that it is said to be;
+- tables: for every table of the model's last layer, the bit or the constant that is said to stand for it
+  equals it, for all bits that the encoder can give;
+- sum: for all bits, the sum of their weights and a constant;
+- winner: for all numbers, the index of the largest, and of equal ones the one that the model takes.
+
+Why this makes the model. The bits behind the encoder are those of the model for some features, so the claim
+about the tables holds for them. The sum of a class adds what stands for the model's tables that vote for
+this class: its weights and its constant are counted here from the model, so its total is the number of
+these tables that fire. The winner is then that of the model.
+
+What an encoder can give is written as a function of ranks: how many of its different thresholds a feature
+reaches. Every rank is that of some word and every word has a rank, so "for all ranks" is "for all bits that
+the encoder can give".
+"""
+
+from collections import Counter
+from collections.abc import Container
+
+from wnn2hdl.ir import Thermometer
+from wnn2hdl.ir.circuit import Circuit, Instance
+from wnn2hdl.ir.encoder import Encoder
+from wnn2hdl.ir.models import VotingModel
+from wnn2hdl.ir.wires import Slice
+from wnn2hdl.verify.composition import Addition, Box, Composition, Piece, bits
+from wnn2hdl.verify.network_lines import encoder_lines, features_width, owners_of, positions_read, table_lines
+from wnn2hdl.verify.reference import class_bits, module, weighted_sum, winning
+
+
+class Pieces:
+    """The pieces of a network, and their wiring.
+
+    Args:
+        model: the model.
+        circuit: the network made from it.
+
+    Attributes:
+        composition: what is claimed.
+        reference: Verilog of the modules that it names.
+
+    Raises:
+        ValueError: the circuit is not made of these pieces, or does not say what its bits are.
+    """
+
+    def __init__(self, model: VotingModel, circuit: Circuit) -> None:
+        self._model = model
+        self._parts = circuit.definitions()
+        self._modules: list[str] = []
+        if not {"encoder", "tables", "core", "winner"} <= self._parts.keys():
+            raise ValueError(f"a network is not made of {', '.join(self._parts)}")
+        self._sums = {
+            node.name: node.circuit.name for node in self._parts["core"].nodes if isinstance(node, Instance)
+        }
+        read = self._read()
+        pieces = {"encoder": self._encoder(read), "tables": self._tables(read)}
+        boxes = {
+            "encode": Box("encoder", {"features": bits("features", features_width(model.encoder))}),
+            "decide.tables": Box("tables", {"bits": bits("encode.bits", len(read))}),
+        }
+        responses: dict[str, tuple[str, ...]] = {}
+        for owner in range(len(model.classes)):
+            name = f"votes_{owner}"
+            if name not in self._sums:
+                raise ValueError(f"there is no {name}")
+            part = self._sums[name]
+            places, addition = self._votes(owner)
+            if part not in pieces:
+                pieces[part] = self._sum(part, addition)
+            elif pieces[part].addition != addition:
+                raise ValueError(f"{name} is not the sum {part}")
+            boxes[f"decide.{name}"] = Box(part, {"bits": tuple(f"decide.tables.votes[{k}]" for k in places)})
+            responses[f"response_{owner}"] = bits(f"decide.{name}.total", pieces[part].outputs["total"])
+        pieces["winner"] = self._winner({port: len(word) for port, word in responses.items()})
+        boxes["decide.winner"] = Box("winner", responses)
+        outputs = {"class_bits": bits("decide.winner.class_bits", class_bits(model))}
+        self.composition = Composition(circuit.name, pieces, boxes, outputs)
+        self.reference = "".join(self._modules)
+
+    def _read(self) -> list[int]:
+        """Which of the encoder's bits the circuit makes, in its order."""
+        carries = self._parts["encoder"].carries
+        places = {bit.low: number for number, bit in carries.items() if isinstance(bit, Slice)}
+        if sorted(places) != list(range(len(carries))) or not places:
+            raise ValueError("the encoder does not say what its bits are")
+        if not all(0 <= number < self._model.encoder.width for number in places.values()):
+            raise ValueError("the encoder makes bits that the model has not")
+        return [places[place] for place in range(len(places))]
+
+    def _encoder(self, read: list[int]) -> Piece:
+        inputs, outputs = {"features": features_width(self._model.encoder)}, {"bits": len(read)}
+        lines, signals = encoder_lines(self._model.encoder, read)
+        lines.append(f"  assign bits = {_joined([signals[number] for number in read])};")
+        statement = "each bit is that of the model, for all features"
+        return self._piece(statement, "encoder", inputs, outputs, lines)
+
+    def _tables(self, read: list[int]) -> Piece:
+        carries, count = self._parts["tables"].carries, len(owners_of(self._model))
+        if carries.keys() != set(range(count)):
+            raise ValueError("the tables do not say what stands for which table of the model")
+        votes = 1 + max((bit.low for bit in carries.values() if isinstance(bit, Slice)), default=0)
+        ranks, lines = _ranks(self._model.encoder, positions_read(self._model).union(read))
+        inputs, outputs = {"ranks": ranks}, {"fires": count}
+        width = self._model.encoder.width
+        self._modules.append(module("proof__bits", inputs, {"bits": width}, lines))
+        given = [f"  wire [{width - 1}:0] given;", "  proof__bits ranked (.ranks(ranks), .bits(given));"]
+        made, fires = table_lines(self._model, [f"given[{number}]" for number in range(width)])
+        lines = [*given, *made, f"  assign fires = {_joined(fires)};"]
+        stand = [
+            f"1'b{int(bit)}" if isinstance(bit, bool) else f"votes[{bit.low}]"
+            for _, bit in sorted(carries.items())
+        ]
+        frame = (*given, f"  wire [{votes - 1}:0] votes;", f"  assign fires = {_joined(stand)};")
+        connections = {"bits": _joined([f"given[{number}]" for number in read]), "votes": "votes"}
+        statement = "what stands for a table of the model equals it, for all bits that the encoder can give"
+        return self._piece(statement, "tables", inputs, outputs, lines, frame, connections)
+
+    def _votes(self, owner: int) -> tuple[list[int], Addition]:
+        """Which votes a class adds, and with which weights: those of the model's tables that vote for it."""
+        weights: Counter[int] = Counter()
+        offset = 0
+        for table, voted in enumerate(owners_of(self._model)):
+            if voted == owner:
+                bit = self._parts["tables"].carries[table]
+                if isinstance(bit, bool):
+                    offset += bit
+                else:
+                    weights[bit.low] += 1
+        if not weights:
+            raise ValueError(f"all tables that vote for class {owner} are constant")
+        return list(weights), Addition(tuple(weights.values()), offset)
+
+    def _sum(self, part: str, addition: Addition) -> Piece:
+        count, highest = len(addition.weights), sum(addition.weights) + addition.offset
+        outputs = {"total": highest.bit_length()}
+        added = weighted_sum([f"bits[{place}]" for place in range(count)], addition.weights, addition.offset)
+        lines = [f"  assign total = {added};"]
+        statement = f"the sum of {count} bits by their weights, for all bits"
+        return self._piece(statement, part, {"bits": count}, outputs, lines, addition=addition)
+
+    def _winner(self, inputs: dict[str, int]) -> Piece:
+        lines = winning(len(inputs), max(inputs.values()), ties=self._model.ties)
+        outputs = {"class_bits": class_bits(self._model)}
+        statement = f"the index of the largest number, of equal ones the {self._model.ties}, for all numbers"
+        return self._piece(statement, "winner", inputs, outputs, lines)
+
+    def _piece(
+        self,
+        statement: str,
+        part: str,
+        inputs: dict[str, int],
+        outputs: dict[str, int],
+        lines: list[str],
+        frame: tuple[str, ...] = (),
+        connections: dict[str, str] | None = None,
+        addition: Addition | None = None,
+    ) -> Piece:
+        name = f"proof__{part}"
+        self._modules.append(module(name, inputs, outputs, lines))
+        return Piece(statement, name, inputs, outputs, frame, connections or {}, addition)
+
+
+def _ranks(encoder: Encoder, read: Container[int]) -> tuple[int, list[str]]:
+    """How many bits the ranks of all features have, and the lines that make the encoder's bits of them.
+
+    Bits that are not read are 0.
+    """
+    if not isinstance(encoder, Thermometer):
+        return features_width(encoder), ["  assign bits = ranks;"]
+    form = encoder.input
+    assert form is not None
+    expressions: list[str] = []
+    low = 0
+    for levels in encoder.levels:
+        reached = sorted({level for level in levels if form.lowest < level <= form.highest})
+        width = len(reached).bit_length()
+        for level in levels:
+            if len(expressions) not in read:
+                expressions.append("1'b0")
+            elif form.lowest < level <= form.highest:
+                rank = reached.index(level) + 1
+                expressions.append(f"ranks[{low + width - 1}:{low}] >= {width}'d{rank}")
+            else:
+                expressions.append(f"1'b{int(level <= form.lowest)}")
+        low += width
+    return max(low, 1), [f"  assign bits = {_joined(expressions)};"]
+
+
+def _joined(signals: list[str]) -> str:
+    """Bits side by side; the first is the least significant."""
+    return f"{{{', '.join(reversed(signals))}}}"
