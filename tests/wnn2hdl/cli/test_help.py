@@ -12,7 +12,7 @@ from wnn2hdl.cli.commands import COMMANDS
 from wnn2hdl.cli.help import Command
 from wnn2hdl.cli.main import app
 
-SCREEN = 54
+SCREEN = 55
 """Lines of 80 characters."""
 
 
