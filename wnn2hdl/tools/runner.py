@@ -149,6 +149,7 @@ def in_parallel(
 
     def call(item: Item) -> Result:
         try:
+            batch.require_open()
             return function(item)
         except BaseException as error:
             # Closed here, since this thread may take the next item before the one that waits hears of it.
@@ -183,10 +184,14 @@ class _Batch:
         """Make the current thread one of this batch."""
         _thread.batch = self
 
+    def require_open(self) -> None:
+        """Raise ToolStoppedError if nothing may start any more."""
+        if self.closed:
+            raise ToolStoppedError("stopped, because the work around it has ended")
+
     def add(self, process: "subprocess.Popen[str]") -> None:
         with self.lock:
-            if self.closed:
-                raise ToolStoppedError("stopped, because the work around it has ended")
+            self.require_open()
             self.processes.add(process)
 
     def remove(self, process: "subprocess.Popen[str]") -> None:
