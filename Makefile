@@ -14,8 +14,9 @@ STAMP := $(VENV)/.installed$(subst $(comma),-,$(EXTRAS))
 demo: $(STAMP)
 	$(BIN)/wnn2hdl demo
 
+# A process for each core, but each needs up to a gigabyte. The tests of a file share what they build.
 test: $(STAMP)
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses logical --maxprocesses 4 --dist loadfile
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
