@@ -48,7 +48,7 @@ SCENE_SIDE, SCENE_SEED = 768, 2000
 ADDRESS_BITS, RAMS, TRIALS, FINALIST_TRIALS, SWEEP_PIXELS = (2, 3, 4, 5), (4, 8, 12, 16), 5, 20, 5_000
 """A sweep of seconds; the reference design's had n = 2…12, k = 2…20, ten trials, and 100 of a finalist."""
 
-LUTS_PER_PIXEL = 2
+LUTS_PER_PIXEL = 1
 
 CALIBRATION_FRAMES = 5
 WINDOW_M = 95.0
@@ -58,7 +58,7 @@ PAGE, REFERENCE_BUILD, SMALLEST_BUILD = "index.html", "reference", "smallest"
 """Names in the demo's folder."""
 
 REFERENCE = "the reference design's discriminators (n = 4, k = 16), on the colours of the training landscapes"
-SMALLEST = f"the most accurate classifier of at most {LUTS_PER_PIXEL} LUTs per pixel, on every input"
+SMALLEST = "the most accurate classifier of one LUT per pixel, on every input"
 """What the two builds are."""
 
 
@@ -70,7 +70,7 @@ class Demo:
         page: the page to open.
         outcome: of the sweep.
         reference: the reference design's discriminators (n = 4, k = 16), in domain mode.
-        smallest: the most accurate classifier of at most `LUTS_PER_PIXEL` LUTs per pixel, on every input.
+        smallest: the most accurate classifier of `LUTS_PER_PIXEL` LUT per pixel, on every input.
         windows: 3x3 windows of a landscape that ran through the smallest circuit.
         scan: the summary of the mapped landscape; None without the extra ``geo``.
         flight: the located flight; None without it.

@@ -44,7 +44,7 @@ def run(monkeypatch: pytest.MonkeyPatch, write_build: Callable[..., Path], tmp_p
 def test_it_says_what_the_circuits_are_and_ends_with_the_page(run: Run, tmp_path: Path) -> None:
     lines = run().stdout.splitlines()
     assert lines[1].startswith("reference: the reference design's discriminators (n = 4, k = 16)")
-    assert lines[2].startswith("smallest: the most accurate classifier of at most 2 LUTs per pixel")
+    assert lines[2].startswith("smallest: the most accurate classifier of one LUT per pixel")
     assert lines[-1] == f"Open {(tmp_path / 'index.html').as_uri()}"
     assert any(line.startswith("map and flight were left out: ") and "[geo]" in line for line in lines)
 
