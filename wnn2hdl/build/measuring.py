@@ -13,7 +13,7 @@ from wnn2hdl.dataset.tables import FeatureTable, read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import evaluate, require_same_classes
 from wnn2hdl.evaluation.classifiers import model_classifier
-from wnn2hdl.evaluation.measures import wilson
+from wnn2hdl.evaluation.measures import accuracy, wilson
 from wnn2hdl.evaluation.rows import confusion_of, require_vector_classifier, row_answers, true_classes
 from wnn2hdl.images import MaskFormat, Palette
 from wnn2hdl.ir.models import AnyModel
@@ -108,8 +108,8 @@ def _measure_rows(design: Design, rows: LabelledRows) -> Measured:
     classes = len(require_vector_classifier(design.model, "the design's").classes)
     circuit, model = (confusion_of(rows.truth, found, classes) for found in (answers, rows.answers))
     return Measured(
-        accuracy=float(np.trace(circuit) / circuit.sum()),
-        model_accuracy=float(np.trace(model) / model.sum()),
+        accuracy=float(accuracy(circuit)),
+        model_accuracy=float(accuracy(model)),
         confusion=tuple(map(tuple, circuit.tolist())),
         rows=RowFigures(
             count=len(answers),

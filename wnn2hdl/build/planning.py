@@ -114,6 +114,11 @@ class CompileOptions:
         return self.edge_images or self.care
 
     @property
+    def pipelined(self) -> bool:
+        """Whether registers are asked for."""
+        return self.stages is not None or self.clock is not None
+
+    @property
     def reading(self) -> Reading:
         """How pictures are read."""
         return Reading(self.bands, self.scale, self.alpha)
@@ -154,7 +159,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
             the clock.
         CheckError: a minimised table differs from the model.
     """
-    if isinstance(model, TableSumModel) and (options.stages is not None or options.clock is not None):
+    if isinstance(model, TableSumModel) and options.pipelined:
         raise InputError(
             "sums of tables cannot be pipelined yet", value=model.kind, hint="leave --stages and --clock out"
         )
@@ -182,7 +187,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         care = _care_sets(model, options, seen) if seen is not None else None
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
-    if video is not None and (options.stages is not None or options.clock is not None):
+    if video is not None and options.pipelined:
         raise InputError("a video core has registers of its own", hint="leave --stages and --clock out")
     lowered = target.lower(Ingredients(model, edges, care, video))
     minimised = minimise(lowered, options.effort, progress, by=minimise_once)

@@ -1,6 +1,8 @@
 """`train`: models from labelled images, or from tables of feature vectors."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -205,60 +207,46 @@ def train_command(
     """
     if table is not None and max_luts is not None:
         refuse((*IMAGES, *OTHERS, *DISCRIMINATORS, *WISARD), "--max-luts trains no discriminators")
-        make_folder(output.parent)
-        with held(output, "model"), progress() as report:
-            summary = train_luts_on_table(
-                table,
-                label,
-                max_luts=max_luts,
-                levels=levels,
-                words=words,
-                epochs=epochs,
-                distort=distort,
-                seed=seed,
-                command=spoken_command({"output", "as_json"}),
-                output=output,
-                progress=report,
-            )
-        emit(summary, luts_sentence(summary), as_json=as_json)
+        network = partial(
+            train_luts_on_table,
+            table,
+            label,
+            max_luts=max_luts,
+            levels=levels,
+            words=words,
+            epochs=epochs,
+            distort=distort,
+            seed=seed,
+        )
+        _train_on_table(network, luts_sentence, output, as_json=as_json)
         return
     refuse(LUT_NETWORK, "networks of look-up tables are trained with both --table and --max-luts")
     if table is not None:
         refuse((*IMAGES, *OTHERS, "--bits", "--balance"), "a table has no pictures")
         bleach = discriminators["bleach"]
-        make_folder(output.parent)
-        with held(output, "model"), progress() as report:
-            summary = train_on_table(
-                table,
-                label,
-                TableOptions(
-                    levels=levels,
-                    thermometer=thermometer,
-                    words=words,
-                    address_bits=discriminators["address_bits"] or TableOptions.address_bits,
-                    rams=discriminators["rams"],
-                    per_class=mapping == "per-class",
-                    bleaching=bleach if isinstance(bleach, int) else None,
-                ),
-                seed=seed,
-                seeds=seeds,
-                command=spoken_command({"output", "as_json"}),
-                output=output,
-                progress=report,
-            )
-        emit(summary, table_sentence(summary), as_json=as_json)
+        options = TableOptions(
+            levels=levels,
+            thermometer=thermometer,
+            words=words,
+            address_bits=discriminators["address_bits"] or TableOptions.address_bits,
+            rams=discriminators["rams"],
+            per_class=mapping == "per-class",
+            bleaching=bleach if isinstance(bleach, int) else None,
+        )
+        wisard = partial(train_on_table, table, label, options, seed=seed, seeds=seeds)
+        _train_on_table(wisard, table_sentence, output, as_json=as_json)
         return
     refuse(TRAINING, "only a table has feature vectors, and none is given with --table")
     dataset = labelled(
         images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
     )
-    options = Discriminators(**discriminators)
+    chosen = Discriminators(**discriminators)
     # Before the training, so that a place that cannot be written is reported at once.
     make_folder(output.parent)
     points: tuple[Point, ...] = ()
     with held(output, "model"), progress() as report:
         if pareto:
-            options.require_none("--pareto")
+            chosen.require_none("--pareto")
             if neighbourhood is not None:
                 raise InputError("--pareto compares pixel classifiers", hint="leave --neighbourhood out")
             points = measure(
@@ -266,15 +254,15 @@ def train_command(
             )
             model = max(pareto_front(points), key=lambda point: point.accuracy).model
         elif neighbourhood is not None:
-            options.require_none("--neighbourhood")
+            chosen.require_none("--neighbourhood")
             model = train_neighbourhood(
                 dataset, int(neighbourhood), luts_per_pixel=luts_per_pixel, seed=seed, progress=report
             )
         elif luts_per_pixel is not None:
-            options.require_none("--luts-per-pixel")
+            chosen.require_none("--luts-per-pixel")
             model = train_under_budget(dataset, luts_per_pixel, trials=trials, seed=seed, progress=report)
         else:
-            model = options.train(dataset, seed, report)
+            model = chosen.train(dataset, seed, report)
         model = with_colours(model, dataset, report)
         command = spoken_command({"output", "as_json"})
         model = replace(model, training={**model.training, COMMAND: command})
@@ -283,6 +271,28 @@ def train_command(
         if pareto:
             summary["front"] = _save_front(points, output, model.colours)
     emit(summary, _sentence(summary), as_json=as_json)
+
+
+def _train_on_table(
+    train: Callable[..., dict[str, Any]],
+    sentence: Callable[[dict[str, Any]], str],
+    output: Path,
+    *,
+    as_json: bool,
+) -> None:
+    """Train, and say what came of it.
+
+    Args:
+        train: takes the command that trains, the place of the model and the progress.
+        sentence: says in words what it returns.
+        output: where the model goes.
+        as_json: say it as JSON instead.
+    """
+    make_folder(output.parent)
+    command = spoken_command({"output", "as_json"})
+    with held(output, "model"), progress() as report:
+        summary = train(command=command, output=output, progress=report)
+    emit(summary, sentence(summary), as_json=as_json)
 
 
 def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:

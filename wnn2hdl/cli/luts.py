@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
 
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.encode.thermometer import whole_words
@@ -77,9 +76,7 @@ def train_luts_on_table(
             to distort, or nothing fits.
     """
     rows = read_table(table, label, "train")
-    classes = tuple(sorted(set(rows.labels)))
-    if len(classes) < 2:
-        raise InputError("the table has one class only", value=classes[0], hint="give rows of another class")
+    classes, owners = rows.owned()
     if distort and rows.grid is None:
         raise InputError(
             "only pictures can be distorted",
@@ -97,7 +94,6 @@ def train_luts_on_table(
     count = len(rows.labels)
     passes = enough_epochs(count) if epochs is None else epochs
     recipe = Recipe(passes, heat=usual_heat(count), seed=seed)
-    owners = np.searchsorted(classes, rows.labels)
     checkpoint = beside(output, CHECKPOINT)
     trained = train_network(rows.features, owners, classes, architecture, recipe, progress, checkpoint)
     figures = {

@@ -30,6 +30,19 @@ class FeatureTable:
     labels: tuple[str, ...]
     grid: tuple[int, int] | None = None
 
+    def owned(self) -> tuple[tuple[str, ...], NDArray[np.int64]]:
+        """The class names in alphabetical order, and the class index of each sample, int64 ``[samples]``.
+
+        Raises:
+            InputError: all samples are of one class.
+        """
+        classes = tuple(sorted(set(self.labels)))
+        if len(classes) < 2:
+            raise InputError(
+                "the table has one class only", value=classes[0], hint="give rows of another class"
+            )
+        return classes, np.searchsorted(classes, self.labels)
+
 
 def read_table(path: Path, label: str | None, part: Literal["train", "test"] = "test") -> FeatureTable:
     """Read a CSV file whose first line names the columns, or the arrays of an ``.npz`` file.

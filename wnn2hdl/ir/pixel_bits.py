@@ -25,27 +25,15 @@ PIXEL_BIT_NAMES = {
 
 
 @dataclass(frozen=True)
-class BitSelect:
-    """Chosen bits of the colour channels: pure wiring, no logic.
+class NamedBits:
+    """An encoder of single pixels whose code bits go by their names.
 
     Attributes:
-        bits: names such as ``R7``: a channel of `CHANNELS`, then a bit number, 7 the most significant. The
-            first named is code bit 0.
+        bits: the names. The first named is code bit 0.
     """
 
-    kind: ClassVar[str] = "bits"
+    kind: ClassVar[str]
     bits: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        for name in self.bits:
-            if name not in PIXEL_BIT_NAMES:
-                raise ValueError(
-                    f"{name!r} is not a pixel bit; use R, G or B and a number from 0 to 7, as in R7"
-                )
-        if not self.bits:
-            raise ValueError("no bits were chosen; name at least one, as in R7")
-        if len(set(self.bits)) != len(self.bits):
-            raise ValueError(f"a bit is named twice in {','.join(self.bits)}")
 
     @property
     def width(self) -> int:
@@ -61,6 +49,33 @@ class BitSelect:
     def halo(self) -> int:
         """A pixel's code depends on no other pixel."""
         return 0
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `encoder_from_json`."""
+        return {"kind": self.kind, "bits": list(self.bits)}
+
+
+@dataclass(frozen=True)
+class BitSelect(NamedBits):
+    """Chosen bits of the colour channels: pure wiring, no logic.
+
+    Attributes:
+        bits: names such as ``R7``: a channel of `CHANNELS`, then a bit number, 7 the most significant. The
+            first named is code bit 0.
+    """
+
+    kind: ClassVar[str] = "bits"
+
+    def __post_init__(self) -> None:
+        for name in self.bits:
+            if name not in PIXEL_BIT_NAMES:
+                raise ValueError(
+                    f"{name!r} is not a pixel bit; use R, G or B and a number from 0 to 7, as in R7"
+                )
+        if not self.bits:
+            raise ValueError("no bits were chosen; name at least one, as in R7")
+        if len(set(self.bits)) != len(self.bits):
+            raise ValueError(f"a bit is named twice in {','.join(self.bits)}")
 
     @property
     def pixel_positions(self) -> tuple[int, ...]:
@@ -92,10 +107,6 @@ class BitSelect:
         codes |= np.take(green, array[..., 1])
         codes |= np.take(blue, array[..., 2])
         return codes
-
-    def to_json(self) -> dict[str, Any]:
-        """A JSON object, read back by `encoder_from_json`."""
-        return {"kind": self.kind, "bits": list(self.bits)}
 
 
 COLOURS = BitSelect(tuple(f"{channel}{bit}" for channel in CHANNELS for bit in (7, 6, 5, 4)))

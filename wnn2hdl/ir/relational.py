@@ -7,15 +7,16 @@ costs nothing beyond the table that reads them.
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
-from wnn2hdl.ir.pixel_bits import CHANNEL_BITS, CHANNELS, PIXEL_BIT_NAMES, BitSelect
+from wnn2hdl.ir.pixel_bits import CHANNEL_BITS, CHANNELS, PIXEL_BIT_NAMES, BitSelect, NamedBits
 
 MAX_WEIGHT = 99
 """The largest weight of a channel."""
@@ -153,8 +154,28 @@ class Comparison:
         return self.evaluate(pixels)
 
 
+def pixel_codes(names: Sequence[str], pixels: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """Codes of pixels by named bits, comparisons among them or not.
+
+    Args:
+        names: as in `Relational.bits`.
+        pixels: uint8 ``S + (3,)``.
+
+    Returns:
+        uint32 ``S``; bit ``i`` is ``names[i]``.
+    """
+    codes = np.zeros(pixels.shape[:-1], dtype=np.uint32)
+    for position, name in enumerate(names):
+        if name in PIXEL_BIT_NAMES:
+            bit = pixels[..., CHANNELS.index(name[0])] >> int(name[1]) & 1 > 0
+        else:
+            bit = Comparison.parse(name).evaluate(pixels)
+        codes |= bit.astype(np.uint32) << position
+    return codes
+
+
 @dataclass(frozen=True)
-class Relational:
+class Relational(NamedBits):
     """Comparisons of channels, and bits of channels.
 
     Attributes:
@@ -163,7 +184,6 @@ class Relational:
     """
 
     kind: ClassVar[str] = "relational"
-    bits: tuple[str, ...]
 
     def __post_init__(self) -> None:
         if not self.comparisons:
@@ -180,21 +200,6 @@ class Relational:
             if name not in PIXEL_BIT_NAMES
         }
 
-    @property
-    def width(self) -> int:
-        """Bits of a code."""
-        return len(self.bits)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Name of each code bit."""
-        return self.bits
-
-    @property
-    def halo(self) -> int:
-        """A pixel's code depends on no other pixel."""
-        return 0
-
     def codes(self, pixels: ArrayLike) -> NDArray[np.uint32]:
         """Codes of pixels.
 
@@ -204,19 +209,7 @@ class Relational:
         Returns:
             uint32 ``S``; bit ``i`` is ``bits[i]``.
         """
-        array = np.asarray(pixels, dtype=np.uint8)
-        codes = np.zeros(array.shape[:-1], dtype=np.uint32)
-        for position, name in enumerate(self.bits):
-            if position in self.comparisons:
-                flags = self.comparisons[position].evaluate(array)
-            else:
-                flags = array[..., CHANNELS.index(name[0])] >> int(name[1]) & 1 > 0
-            codes |= flags.astype(np.uint32) << position
-        return codes
-
-    def to_json(self) -> dict[str, Any]:
-        """A JSON object, read back by `encoder_from_json`."""
-        return {"kind": self.kind, "bits": list(self.bits)}
+        return pixel_codes(self.bits, np.asarray(pixels, dtype=np.uint8))
 
 
 def signal_name(name: str) -> str:

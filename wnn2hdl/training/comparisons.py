@@ -20,13 +20,12 @@ from wnn2hdl.ir import (
     CHANNELS,
     LUT_INPUTS,
     PIXEL_BIT_NAMES,
-    BitSelect,
     Comparison,
     Relational,
     TruthTable,
     WisardModel,
 )
-from wnn2hdl.ir.relational import Weighted
+from wnn2hdl.ir.relational import Weighted, pixel_codes
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.training.bitselect import Histogram, look_up_table
 from wnn2hdl.training.bitselect.drift import unpacked
@@ -143,7 +142,7 @@ def _affordable(training: _Pixels, chosen: tuple[str, ...], luts: int) -> _Addit
         if width > LUT_INPUTS or _least_cost(shape) + (width > 1) > luts:
             continue
         if above not in codes:
-            codes[above] = _codes(chosen + above, training.pixels)
+            codes[above] = pixel_codes(chosen + above, training.pixels).astype(np.int64)
         additions.append(_best_offset(training, codes[above], shape, above))
     ranked = sorted(additions, key=lambda addition: -addition.right)
     # A threshold of one channel is cheap enough for any budget.
@@ -187,7 +186,7 @@ def _best_offset(
 def _answers(training: _Pixels, names: tuple[str, ...]) -> NDArray[np.int64]:
     """The class of each code: int64 ``[2**len(names)]``."""
     size = 1 << len(names)
-    masses = np.bincount(_codes(names, training.pixels), training.sign, size)
+    masses = np.bincount(pixel_codes(names, training.pixels), training.sign, size)
     levels = np.arange(2, 256, 4, dtype=np.uint8)
     colours = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 3)
     first = next(Comparison.parse(name) for name in names if name not in PIXEL_BIT_NAMES)
@@ -196,7 +195,7 @@ def _answers(training: _Pixels, names: tuple[str, ...]) -> NDArray[np.int64]:
     with_first = np.bincount(first.evaluate(training.pixels), training.sign, 2)
     sign = np.where(whole.evaluate(colours), 1.0, -1.0)
     sign *= np.sign(with_first[1] - with_first[0])
-    prior = np.bincount(_codes(names, colours), sign, size) / len(colours)
+    prior = np.bincount(pixel_codes(names, colours), sign, size) / len(colours)
     return np.asarray(masses + PRIOR * len(training.sign) * prior > 0).astype(np.int64)
 
 
@@ -220,14 +219,3 @@ def _cost(name: str) -> int:
     comparison = Comparison.parse(name)
     table = TruthTable.exact(comparison.bits, ("o",), comparison.table()[:, np.newaxis])
     return len(map_luts(table, effort=0).network.luts)
-
-
-def _codes(names: tuple[str, ...], pixels: NDArray[np.uint8]) -> NDArray[np.int64]:
-    codes = np.zeros(len(pixels), dtype=np.int64)
-    for position, name in enumerate(names):
-        if name in PIXEL_BIT_NAMES:
-            flags = BitSelect((name,)).codes(pixels)
-        else:
-            flags = Comparison.parse(name).evaluate(pixels).astype(np.uint32)
-        codes |= flags.astype(np.int64) << position
-    return codes

@@ -60,10 +60,7 @@ def train_table(table: FeatureTable, options: TableOptions, seed: int) -> Wisard
     Raises:
         InputError: the table has one class only or nothing but constant features, or n does not fit.
     """
-    classes = tuple(sorted(set(table.labels)))
-    if len(classes) < 2:
-        raise InputError("the table has one class only", value=classes[0], hint="give rows of another class")
-    owners = np.searchsorted(classes, table.labels)
+    classes, owners = table.owned()
     notes = {
         "seed": seed,
         "rows": len(table.labels),

@@ -15,15 +15,11 @@ Latencies meet if all bits that a box reads are equally late: the box or port th
 registers on the way, add up to one number of cycles. A box answers its latency later.
 """
 
-import json
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-from wnn2hdl.tools import find_yosys
-from wnn2hdl.verify.equivalence import CLOCK, Circuit, one_clock, read, read_cells
+from wnn2hdl.verify.equivalence import CLOCK, Circuit, one_clock, structure
 
 _SECONDS = 600.0
 _FRAME = "proof__frame"
@@ -155,19 +151,8 @@ def wrong_wire(composition: Composition, circuit: Circuit, parts: Mapping[str, C
 
 def _wiring(circuit: Circuit, modules: Sequence[str]) -> dict[str, Any]:
     """The top module in Yosys's JSON, flattened down to these modules."""
-    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
-        folder = Path(name)
-        script = [
-            *read_cells([circuit]),
-            *read(circuit, 0, folder),
-            f"blackbox {' '.join(modules)}",
-            "flatten -noscopeinfo",
-        ]
-        script += ["simplemap", *one_clock(circuit), "opt_clean", "write_json wiring.json"]
-        find_yosys().run("\n".join(script) + "\n", timeout=_SECONDS, cwd=folder)
-        design = json.loads((folder / "wiring.json").read_text(encoding="utf-8"))
-    found: dict[str, Any] = design["modules"][circuit.top]
-    return found
+    commands = [f"blackbox {' '.join(modules)}", "flatten -noscopeinfo", "simplemap"]
+    return structure(circuit, [*commands, *one_clock(circuit), "opt_clean"], timeout=_SECONDS)
 
 
 class _Wires:

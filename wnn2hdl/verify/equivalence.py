@@ -16,12 +16,13 @@ register too few or too many, a register whose contents survive, or an enable ma
 these, and the circuits differ. All registers have to be clocked by the rising edge of the port ``clk``.
 """
 
+import json
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.tools import find_yosys, run_abc
@@ -222,6 +223,26 @@ def _unrolled(path: Path, graph: _Graph, cycles: int) -> _Graph:
     aiger.write(path)
     inputs = {position: graph.inputs[place] for position, place in enumerate(first)}
     return replace(graph, inputs=inputs, free=aiger.inputs - len(first))
+
+
+def structure(circuit: Circuit, commands: Sequence[str], *, timeout: float) -> dict[str, Any]:
+    """The top module of a circuit in Yosys's JSON.
+
+    Args:
+        circuit: the circuit.
+        commands: what Yosys does with it after it is read.
+        timeout: seconds.
+
+    Raises:
+        ToolError: Yosys cannot read the circuit, or a command failed.
+    """
+    with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
+        folder = Path(name)
+        script = [*read_cells([circuit]), *read(circuit, 0, folder), *commands, "write_json circuit.json"]
+        find_yosys().run("\n".join(script) + "\n", timeout=timeout, cwd=folder)
+        modules = json.loads((folder / "circuit.json").read_text(encoding="utf-8"))["modules"]
+    found: dict[str, Any] = modules[circuit.top]
+    return found
 
 
 def one_clock(circuit: Circuit) -> list[str]:

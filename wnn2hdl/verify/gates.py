@@ -1,16 +1,12 @@
 """Circuits as gates between wires with names, which is where a proof by arithmetic cuts."""
 
-import json
-import tempfile
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.tools import find_yosys
-from wnn2hdl.verify.equivalence import TO_GATES, Circuit, one_clock, read, read_cells
+from wnn2hdl.verify.equivalence import TO_GATES, Circuit, one_clock, structure
 
 Wire = int | str
 """A bit of a module in Yosys's JSON: a number, or a constant ``0`` or ``1``."""
@@ -59,14 +55,9 @@ class Gates:
     @classmethod
     def read(cls, circuit: Circuit) -> Self:
         """The gates of a circuit, flattened; raises ToolError if Yosys cannot read it."""
-        with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
-            folder = Path(name)
-            script = [*read_cells([circuit]), *read(circuit, 0, folder), "check -assert", *TO_GATES]
-            script += ["opt_clean", "flatten -noscopeinfo", *one_clock(circuit), "opt_clean"]
-            script.append("write_json gates.json")
-            find_yosys().run("\n".join(script) + "\n", timeout=_SECONDS, cwd=folder)
-            design = json.loads((folder / "gates.json").read_text(encoding="utf-8"))
-        return cls(design["modules"][circuit.top])
+        commands = ["check -assert", *TO_GATES, "opt_clean", "flatten -noscopeinfo"]
+        commands += [*one_clock(circuit), "opt_clean"]
+        return cls(structure(circuit, commands, timeout=_SECONDS))
 
     def reads(self, wire: Wire) -> tuple[Wire, ...]:
         """The cuts and inputs that the wire at a cut depends on.

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.training.gradient.cost import decision_luts, network_luts
+from wnn2hdl.training.gradient.cost import decision_luts, most_that_fit, network_luts
 from wnn2hdl.training.gradient.inputs import InputBits
 from wnn2hdl.training.gradient.layer import VotingLayer
 
@@ -52,16 +52,13 @@ class Budget:
 
     def _largest(self, layer: VotingLayer, effects: NDArray[np.float64], spare: int) -> VotingLayer:
         """The most of the best nodes whose bound, less what is spare in it, fits."""
-        low, high = 0, layer.nodes_per_class
-        while low < high:
-            middle = (low + high + 1) // 2
-            if self._bound(layer.best_nodes(middle, effects)) - spare <= self.max_luts:
-                low = middle
-            else:
-                high = middle - 1
-        if low == 0:
+        nodes = most_that_fit(
+            layer.nodes_per_class,
+            lambda n: self._bound(layer.best_nodes(n, effects)) - spare <= self.max_luts,
+        )
+        if nodes == 0:
             raise self._too_small()
-        return layer.best_nodes(low, effects)
+        return layer.best_nodes(nodes, effects)
 
     def _bound(self, layer: VotingLayer) -> int:
         """LUTs of the network if no bit of the encoder shares logic with another."""

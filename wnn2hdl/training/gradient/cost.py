@@ -1,5 +1,7 @@
 """What a voting network costs, counted by the project's own flow."""
 
+from collections.abc import Callable
+
 from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
 from wnn2hdl.errors import InputError
@@ -43,19 +45,27 @@ def affordable_nodes(max_luts: int, classes: int) -> int:
     Raises:
         InputError: not even one node per class fits.
     """
-    low, high = 0, max(1, max_luts // classes)
-    while low < high:
-        middle = (low + high + 1) // 2
-        if classes * middle + decision_luts(classes, middle) <= max_luts:
-            low = middle
-        else:
-            high = middle - 1
-    if low == 0:
+    nodes = most_that_fit(
+        max(1, max_luts // classes), lambda n: classes * n + decision_luts(classes, n) <= max_luts
+    )
+    if nodes == 0:
         raise InputError(
             f"no network of {classes} classes fits",
             value=f"{max_luts} LUTs",
             hint=f"allow at least {classes + decision_luts(classes, 1)}",
         )
+    return nodes
+
+
+def most_that_fit(most: int, fits: Callable[[int], bool]) -> int:
+    """The largest number from 1 to ``most`` that fits, where all smaller ones fit, too; 0 if none does."""
+    low, high = 0, most
+    while low < high:
+        middle = (low + high + 1) // 2
+        if fits(middle):
+            low = middle
+        else:
+            high = middle - 1
     return low
 
 
