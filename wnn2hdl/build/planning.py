@@ -62,6 +62,7 @@ class CompileOptions:
             `wnn2hdl.schedule`.
         style: how LUT networks are written: as cells of the vendor, or as equations.
         effort: 0 to 3, how long to look for a smaller circuit.
+        max_luts: LUTs that the circuit may take; more than the device has allow a circuit that cannot fit it.
         max_width: of a video core: pixels of the longest line.
         channels: of a video core: those of a pixel, from the least significant byte.
         answer: of a video core: ``class``, ``edge`` or ``both``.
@@ -93,6 +94,7 @@ class CompileOptions:
     clock: float | None = None
     style: Style = "cells"
     effort: int = 1
+    max_luts: int | None = None
     max_width: int = VideoFormat.max_width
     channels: str = VideoFormat.channels
     answer: Answer = VideoFormat.answer

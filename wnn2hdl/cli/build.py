@@ -181,7 +181,6 @@ SECTIONS = {
 def compile_command(
     model: Path,
     output: Path,
-    max_luts: int | None,
     allow_unproved: tuple[str, ...],
     as_json: bool,
     **choices: Any,
@@ -207,5 +206,5 @@ def compile_command(
     if build.failure is not None:
         raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
     require_proved(build.report["proof"]["unproved"], allow_unproved)
-    if max_luts is not None:
-        require_luts(build, max_luts)
+    if options.max_luts is not None:
+        require_luts(build, options.max_luts)
