@@ -11,14 +11,14 @@ from wnn2hdl.build.folder import failure
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.errors import InputError
-from wnn2hdl.evaluation.classifiers import PictureClassifier, PixelTable, familiar_colours, model_classifier
+from wnn2hdl.evaluation.classifiers import PixelTable, familiar_colours, model_classifier
 from wnn2hdl.evaluation.rows import scaled
 from wnn2hdl.ir import Thermometer, WisardModel, Words, all_codes, bits_to_codes, picture_encoder
 from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.lower.deforestation import DECISION
 
 
-def open_classifier(path: Path) -> PictureClassifier:
+def open_classifier(path: Path) -> PixelTable:
     """The classifier in a model file; or the circuit of a build folder, cared for or not.
 
     A circuit knows the pixels in its care set that have colours its model was trained on.

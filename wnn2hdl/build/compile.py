@@ -177,6 +177,7 @@ def _report(
         accuracy=measured.accuracy,
         model_accuracy=measured.model_accuracy,
         confusion=measured.confusion,
+        light=measured.light,
         rows=measured.rows,
         model=model_figures(design.model),
         command=command(name, options),

@@ -12,13 +12,17 @@ from wnn2hdl.dataset import Dataset, from_masks
 from wnn2hdl.dataset.tables import FeatureTable, read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import evaluate, require_same_classes
-from wnn2hdl.evaluation.classifiers import model_classifier
-from wnn2hdl.evaluation.measures import accuracy, wilson
-from wnn2hdl.evaluation.rows import confusion_of, require_vector_classifier, row_answers, true_classes
+from wnn2hdl.evaluation.classifiers import PixelTable, model_classifier
+from wnn2hdl.evaluation.light import REPORTED, brighter_figures, brighter_warning, light_curve
+from wnn2hdl.evaluation.measures import accuracy, confusion_of, wilson
+from wnn2hdl.evaluation.rows import require_vector_classifier, row_answers, true_classes
 from wnn2hdl.images import MaskFormat, Palette
 from wnn2hdl.ir.models import AnyModel
 from wnn2hdl.progress import Progress
-from wnn2hdl.report import RowFigures
+from wnn2hdl.report import LightFigures, RowFigures
+
+SEED = 0
+"""Of the bootstrap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +51,7 @@ class Measured:
     coverage: float | None = None
     confusion: tuple[tuple[int, ...], ...] | None = None
     left_out: float | None = None
+    light: LightFigures = field(default_factory=LightFigures)
     rows: RowFigures = field(default_factory=RowFigures)
 
 
@@ -92,7 +97,8 @@ def measure(design: Design, data: Dataset | LabelledRows | None, progress: Progr
         return _measure_rows(design, data)
     if data is None or not design.target.classifies:
         return Measured()
-    circuit = evaluate(circuit_classifier(design), data, progress)
+    classifier = circuit_classifier(design)
+    circuit = evaluate(classifier, data, progress)
     model = evaluate(model_classifier(design.picture_model), data, progress)
     return Measured(
         circuit.accuracy,
@@ -100,6 +106,18 @@ def measure(design: Design, data: Dataset | LabelledRows | None, progress: Progr
         circuit.coverage,
         tuple(map(tuple, circuit.confusion.sum(axis=0).tolist())),
         circuit.left_out_share,
+        _measure_light(classifier, data, progress),
+    )
+
+
+def _measure_light(circuit: PixelTable, data: Dataset, progress: Progress) -> LightFigures:
+    curves = {
+        quantity: light_curve(circuit, data, quantity, values, progress)
+        for quantity, values in REPORTED.items()
+    }
+    warning = brighter_warning(brighter_figures(curves["exposure"].shares, circuit.encoder))
+    return LightFigures(
+        {quantity: tuple(curve.figures(SEED)) for quantity, curve in curves.items()}, warning or None
     )
 
 

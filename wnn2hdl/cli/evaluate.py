@@ -7,13 +7,13 @@ from typing import Any
 import click
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
 from rich.table import Table
 
 from wnn2hdl.build.classifier import circuit_row_answers, open_classifier, open_working_build
 from wnn2hdl.build.design import MODEL_FILE
 from wnn2hdl.build.folder import require_build
 from wnn2hdl.build.reporting import read_report
+from wnn2hdl.cli.light import LIGHT, Light, in_light, light_lines, light_options
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     SAMPLE_IMAGES,
@@ -28,26 +28,28 @@ from wnn2hdl.cli.options import (
     share_option,
     square_option,
 )
-from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.cli.output import emit, json_option, printed, progress
 from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
 from wnn2hdl.cli.vectors import label_option, raw_option, table_option
 from wnn2hdl.dataset import Dataset, from_samples
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import Evaluation, Squares, evaluate, majority_labels
-from wnn2hdl.evaluation.classifiers import PictureClassifier
+from wnn2hdl.evaluation.classifiers import PictureClassifier, PixelTable
+from wnn2hdl.evaluation.light import worst_image
 from wnn2hdl.evaluation.measures import (
     CONFIDENCE,
     METHOD,
     accuracy,
     class_scores,
+    confusion_of,
     defined,
     interval,
     kappa,
     mean_iou,
     wilson,
 )
-from wnn2hdl.evaluation.rows import confusion_of, load_vector_classifier, row_answers, true_classes
+from wnn2hdl.evaluation.rows import load_vector_classifier, row_answers, true_classes
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.lower.targets import TARGETS
@@ -60,6 +62,7 @@ MEASURES = {"accuracy": accuracy, "kappa": kappa, "mean_iou": mean_iou}
 
 SECTIONS = {
     "Pictures with masks": ("--images", "--masks", *MASKS, *READING, "--square", "--share"),
+    "Changed light, with masks": LIGHT,
     "Pictures with tags": ("--chips", "--tags"),
     "Feature vectors": ("--table", "--label", "--raw"),
 }
@@ -73,6 +76,7 @@ SECTIONS = {
 @reading_options
 @click.option("--chips", type=folder, help="Read pictures tagged as a whole (needs --tags).")
 @click.option("--tags", type=file, help="Read image_name,tags of the chips from this CSV.")
+@light_options
 @table_option
 @label_option
 @raw_option
@@ -88,6 +92,7 @@ def evaluate_command(
     reading: Reading,
     chips: Path | None,
     tags: Path | None,
+    light: Light,
     table: Path | None,
     label: str | None,
     raw: bool | None,
@@ -99,18 +104,20 @@ def evaluate_command(
     """Measure MODEL, a model file or a build folder (its circuit and its model).
 
     On pictures with masks, or on embedded landscapes if none are given: accuracy, kappa, mean intersection
-    over union, and each class's precision, recall, F1 and IoU. On pictures with tags: how well the share
+    over union, and each class's precision, recall, F1 and IoU; the image with the fewest pixels right; and
+    in one line whether brighter ground may be answered differently. On pictures with tags: how well the share
     called deforested separates cleared land from forest. Intervals are bootstrapped over images. On feature
     vectors: the same measures, with Wilson's interval of the accuracy. An undefined figure (0/0) is null.
 
     \b
     Examples:
-      wnn2hdl evaluate build/mine --images IMAGES --masks MASKS --square 20
+      wnn2hdl evaluate build/mine --images IMAGES --masks MASKS --exposure 0.8..1.5
       wnn2hdl evaluate model.json --table data.csv --label class --json
     """
     if table is None:
         refuse(("--label", "--raw"), "only a table has feature vectors, and none is given with --table")
     else:
+        refuse(LIGHT, "a table has no light")
         if images or masks or mask_format or chips or tags or square or reading != Reading():
             raise InputError("a table has no pictures", hint="leave out the options for pictures")
         data, text = _with_table(model, table, label, raw)
@@ -123,10 +130,11 @@ def evaluate_command(
             first = next(iter(parts.values()))
             dataset = _dataset(first, images, masks, mask_format, reading, seed)
             squares = None if square is None else Squares(square, share, seed)
-            data, text = _with_masks(parts, dataset, squares, seed, report)
+            data, text = _with_masks(parts, dataset, squares, light, seed, report)
         else:
             if chips is None or tags is None:
                 raise InputError("these options go together", value="--chips and --tags", hint="give both")
+            refuse(LIGHT, "light is varied with masks")
             if images or masks or mask_format or square:
                 raise InputError(
                     "chips with tags have no masks and no squares",
@@ -137,7 +145,7 @@ def evaluate_command(
     emit({**head, **data, "bootstrap": bootstrap}, text, as_json=as_json)
 
 
-def _parts(model: Path) -> tuple[dict[str, PictureClassifier], dict[str, str]]:
+def _parts(model: Path) -> tuple[dict[str, PixelTable], dict[str, str]]:
     """What is to be measured: a model; or of a build its circuit, then its model, and the mode."""
     if not model.is_dir():
         return {"model": open_classifier(model)}, {}
@@ -168,16 +176,21 @@ def _dataset(
 
 
 def _with_masks(
-    parts: dict[str, PictureClassifier],
+    parts: dict[str, PixelTable],
     dataset: Dataset,
     squares: Squares | None,
+    light: Light,
     seed: int,
     report: Progress,
 ) -> tuple[dict[str, Any], str]:
     found: dict[str, dict[str, Any]] = {}
     for name, classifier in parts.items():
         result = evaluate(classifier, dataset, report)
-        found[name] = _overall(result, seed)
+        found[name] = {
+            **_overall(result, seed),
+            "worst_image": worst_image(result.names, result.confusion),
+            **in_light(classifier, dataset, light, seed, report),
+        }
         if squares is not None:
             truth = majority_labels(dataset, squares.side)
             found[name]["squares"] = {
@@ -247,7 +260,7 @@ def _with_table(model: Path, table: Path, label: str | None, raw: bool | None) -
 
 
 def _with_tags(
-    parts: dict[str, PictureClassifier],
+    parts: dict[str, PixelTable],
     chips: Path,
     tags: Path,
     reading: Reading,
@@ -290,10 +303,10 @@ def _lines(heading: str, figures: dict[str, Any]) -> str:
     table = Table("class", "precision", "recall", "F1", "IoU")
     for label, scores in figures["per_class"].items():
         table.add_row(label, *(_figure(score) for score in scores.values()))
-    console = Console(width=100, markup=False, emoji=False)
-    with console.capture() as captured:
-        console.print(table)
-    lines.append(captured.get().rstrip())
+    lines.append(printed(table))
+    if "worst_image" in figures:
+        worst = figures["worst_image"]
+        lines += [f"worst image: {worst['name']}, accuracy {worst['accuracy']:.4f}", *light_lines(figures)]
     if "squares" in figures:
         squares = figures["squares"]
         lines += [

@@ -50,9 +50,10 @@ from wnn2hdl.cli.vectors import (
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import Spacing, high_bits, parse_bits
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.light import brighter_figures, brighter_warning
 from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
-from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir import WisardModel, picture_encoder
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
@@ -306,8 +307,15 @@ def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
         "bleaching": model.bleaching,
         "images": images,
         "saturation": {"mean": float(saturation.mean()), "highest": float(saturation.max())},
+        "brighter": brighter_figures(_shares(model), picture_encoder(model)),
         "training": dict(model.training),
     }
+
+
+def _shares(model: WisardModel) -> dict[float, float]:
+    """Accuracy on unseen images by exposure, if the training measured it."""
+    light = model.training.get(LIGHT, {})
+    return {float(exposure): figures["accuracy"] for exposure, figures in light.items()}
 
 
 def _sentence(summary: dict[str, Any]) -> str:
@@ -324,6 +332,8 @@ def _sentence(summary: dict[str, Any]) -> str:
         f"to {figures['other_images'][1]:.2%} of as many others"
         for exposure, figures in summary["training"].get(LIGHT, {}).items()
     ]
+    warning = brighter_warning(summary["brighter"])
+    lines += [warning] if warning else []
     left_out = summary["training"][LEFT_OUT]
     if left_out["pixels"]:
         lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")

@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, Task, TextColumn, TimeElapsedColu
 from rich.table import Table
 
 from wnn2hdl.cli.terminal import say
+from wnn2hdl.report.page import as_taken
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on stdout and nothing else."
@@ -65,6 +66,14 @@ def _make_room(bars: Progress, console: Console) -> None:
         bars.update(finished.id, visible=False)
 
 
+def printed(table: Table) -> str:
+    """A table as a terminal shows it, of at most 100 columns and without colours."""
+    console = Console(width=100, markup=False, emoji=False)
+    with console.capture() as captured:
+        console.print(table)
+    return captured.get().rstrip()
+
+
 def parts_table(report: dict[str, Any], folder: Path) -> str:
     """What a build costs and whether it is proved, for a terminal."""
     table = Table(title=f"{report['name']}: {report['target']}, {report['mode']} mode", title_justify="left")
@@ -78,12 +87,9 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
     for part, figures in report["parts"].items():
         if figures["luts"] is not None:
             table.add_row(part, *("n/a" if figures[key] is None else str(figures[key]) for key in columns))
-    console = Console(width=100, markup=False, emoji=False)
-    with console.capture() as captured:
-        console.print(table)
     proof = report["proof"]
     earlier = f" (before: {', '.join(proof['before'])})" if proof.get("before") else ""
-    lines = [captured.get().rstrip()]
+    lines = [printed(table)]
     if report["latency"]:
         stage = f"a stage takes {report['stage_ps']} ps with wires, by the delay model"
         lines.append(f"latency: {report['latency']} cycles; {stage}")
@@ -96,14 +102,18 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
         if pruned["rows"] is not None:
             text += f"; {pruned['changed']} of {pruned['rows']} answers change on --prune-table"
         lines.append(text)
-    rows = report["rows"]
+    rows, light = report["rows"], report["light"]
+    place = as_taken(report)
+    over_images = None if place is None else light["curves"]["exposure"][place]["interval"]
     for name, key, span in (
         ("model", "model_accuracy", rows["model_interval"]),
-        ("circuit", "accuracy", rows["interval"]),
+        ("circuit", "accuracy", rows["interval"] or over_images),
     ):
         if report[key] is not None:
             interval = "" if span is None else f" ({span[0]:.2%} to {span[1]:.2%})"
             lines.append(f"accuracy of the {name}: {report[key]:.2%}{interval}")
     if rows["changed"]:
         lines.append(f"{rows['changed']} of {rows['count']} rows are answered differently")
+    if light["warning"]:
+        lines.append(light["warning"])
     return "\n".join([*lines, f"written to {folder}"])

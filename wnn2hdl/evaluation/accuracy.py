@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.classifiers import PictureClassifier
+from wnn2hdl.evaluation.measures import confusion_of
 from wnn2hdl.evaluation.squares import vote
 from wnn2hdl.images import whole_windows
 from wnn2hdl.progress import Progress, reported
@@ -97,17 +98,10 @@ def evaluate(
     confusion = np.zeros((len(dataset), classes, classes), dtype=np.int64)
     covered, left_out = np.zeros((2, len(dataset)), dtype=np.int64)
     for position, image in enumerate(reported(dataset, "evaluating images", len(dataset), progress)):
-        if image.shape is None and not classifier.halo and squares is None:
-            answers, known = (x[0] for x in classifier.answer(image.pixels[np.newaxis]))
-            labels = image.labels
-        else:
-            answers, known = _answers(classifier, image, squares)
-            used = image.usable(classifier.halo)
-            answers, known, labels = answers[used], known[used], image.label_picture[used]
-            left_out[position] = used.size - len(labels)
-        cells = labels.astype(np.int64) * classes + answers
-        confusion[position] = np.bincount(cells, minlength=classes**2).reshape(classes, classes)
+        answers, known, labels = labelled_answers(classifier, image, squares)
+        confusion[position] = confusion_of(labels, answers, classes)
         covered[position] = np.count_nonzero(known)
+        left_out[position] = 0 if image.shape is None else np.prod(image.shape) - len(labels)
     if not confusion.any():
         raise InputError(
             "no pixel can be measured",
@@ -117,23 +111,38 @@ def evaluate(
     return Evaluation(dataset.names, dataset.classes, confusion, covered, left_out)
 
 
-def _answers(
+def labelled_answers(
     classifier: PictureClassifier, image: LabelledImage, squares: Squares | None
-) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """Class of each pixel of an image, and whether the classifier knows its colours: ``[height, width]``."""
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_], NDArray[np.uint8]]:
+    """What a classifier answers for the measured pixels of an image.
+
+    Args:
+        classifier: what answers.
+        image: the image.
+        squares: as of `evaluate`.
+
+    Returns:
+        The class of each pixel, whether the classifier knows its colours, and its label, each ``[n]``.
+
+    Raises:
+        InputError: neighbours or squares are needed, and the image has only some of its pixels here.
+    """
+    if image.shape is None and not classifier.halo and squares is None:
+        answers, known = (x[0] for x in classifier.answer(image.pixels[np.newaxis]))
+        return answers, known, image.labels
     answers, known = classifier.answer(with_halo(image.picture, classifier.halo))
-    if squares is None:
-        return answers, known
-    valid = None if image.scene is None else whole_windows(image.scene.valid, classifier.halo)
-    voted = vote(
-        answers,
-        valid,
-        side=squares.side,
-        share=squares.share,
-        seed=squares.seed,
-        count=len(classifier.classes),
-    )
-    return voted, known
+    if squares is not None:
+        valid = None if image.scene is None else whole_windows(image.scene.valid, classifier.halo)
+        answers = vote(
+            answers,
+            valid,
+            side=squares.side,
+            share=squares.share,
+            seed=squares.seed,
+            count=len(classifier.classes),
+        )
+    used = image.usable(classifier.halo)
+    return answers[used], known[used], image.label_picture[used]
 
 
 def with_halo(picture: NDArray[np.uint8], halo: int) -> NDArray[np.uint8]:

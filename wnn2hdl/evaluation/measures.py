@@ -37,6 +37,12 @@ class ClassScores:
     iou: float | None
 
 
+def confusion_of(truth: NDArray[np.integer], answers: NDArray[np.integer], classes: int) -> NDArray[np.int64]:
+    """Samples by true class (rows) and answer (columns): int64 ``[classes, classes]``."""
+    cells = truth.astype(np.int64) * classes + answers
+    return np.bincount(cells, minlength=classes**2).reshape(classes, classes)
+
+
 def accuracy(confusion: NDArray[np.int64]) -> NDArray[np.float64]:
     """Share of pixels that are right."""
     return _ratio(_hits(confusion).sum(axis=-1), confusion.sum(axis=(-2, -1)))

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.measures import confusion_of
 from wnn2hdl.ir import Thermometer, WisardModel, Words
 from wnn2hdl.ir.models import AnyModel, ClassifierModel, LogicModel, load_model
 
@@ -108,11 +109,6 @@ def feature_bits(model: VectorClassifier, features: NDArray[np.float64]) -> NDAr
         return encoder.bits(features)
     except ValueError as error:
         raise InputError("the model cannot read the features", value=error) from error
-
-
-def confusion_of(truth: NDArray[np.int64], answers: NDArray[np.int64], classes: int) -> NDArray[np.int64]:
-    """Samples by true class (rows) and answer (columns): int64 ``[classes, classes]``."""
-    return np.bincount(truth * classes + answers, minlength=classes**2).reshape(classes, classes)
 
 
 def row_confusion(model: VectorClassifier, table: FeatureTable, raw: bool | None) -> NDArray[np.int64]:

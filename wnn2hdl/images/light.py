@@ -1,7 +1,10 @@
-"""Pictures under more or less light."""
+"""Pictures under more or less light, and through haze."""
 
 import numpy as np
 from numpy.typing import NDArray
+
+AIRLIGHT = 255
+"""The level of air that hides the ground altogether, in all channels: white."""
 
 
 def exposed(pixels: NDArray[np.uint8], factor: float) -> NDArray[np.uint8]:
@@ -13,5 +16,22 @@ def exposed(pixels: NDArray[np.uint8], factor: float) -> NDArray[np.uint8]:
         pixels: uint8 of any shape.
         factor: above 0.
     """
-    levels = np.floor(np.arange(256) * factor + 0.5)
-    return np.take(np.minimum(levels, 255).astype(np.uint8), pixels)
+    return _mapped(pixels, np.arange(256) * factor)
+
+
+def hazed(pixels: NDArray[np.uint8], share: float) -> NDArray[np.uint8]:
+    """Pixels as they are seen through haze, of which ``share`` of the light comes from the air.
+
+    The rest is the ground's, as in Koschmieder's law; the air's level is `AIRLIGHT`, and halves are rounded
+    upwards.
+
+    Args:
+        pixels: uint8 of any shape.
+        share: 0 for clear air, to 1.
+    """
+    return _mapped(pixels, (1 - share) * np.arange(256) + share * AIRLIGHT)
+
+
+def _mapped(pixels: NDArray[np.uint8], levels: NDArray[np.floating]) -> NDArray[np.uint8]:
+    rounded = np.minimum(np.floor(levels + 0.5), 255).astype(np.uint8)
+    return np.take(rounded, pixels)

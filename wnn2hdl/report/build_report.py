@@ -1,6 +1,6 @@
 """The figures of one build and their form as `report.json`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -140,6 +140,22 @@ class EdgeFigures:
 
 
 @dataclass(frozen=True)
+class LightFigures:
+    """How right a circuit is on labelled pictures whose light is changed.
+
+    Attributes:
+        curves: by what varies, ``exposure`` or ``haze``, for each ``value`` the ``accuracy``, its 95 %
+            ``interval``, bootstrapped over images (None with one image), and of the ``worst_image`` the
+            ``name`` and the ``accuracy``; empty where not measured.
+        warning: that and why brighter ground may be answered differently, in words; None if nothing speaks
+            for it.
+    """
+
+    curves: Mapping[str, Sequence[Mapping[str, Any]]] = field(default_factory=dict)
+    warning: str | None = None
+
+
+@dataclass(frozen=True)
 class RowFigures:
     """How right a circuit of features is on labelled rows; None where not measured.
 
@@ -200,6 +216,7 @@ class BuildReport:
         accuracy: of the circuit, 0 to 1, on labelled pixels or rows; None if there were none.
         model_accuracy: of the model on the same; of a model of features, as it was given.
         confusion: those pixels or rows by true class (rows) and the circuit's answer (columns).
+        light: the circuit's accuracy in changed light.
         rows: more about labelled rows.
         model: the network that was compiled.
         command: what compiles the model file of the build folder again, run beside that folder.
@@ -227,6 +244,7 @@ class BuildReport:
     accuracy: float | None = None
     model_accuracy: float | None = None
     confusion: tuple[tuple[int, ...], ...] | None = None
+    light: LightFigures = LightFigures()
     rows: RowFigures = RowFigures()
     model: ModelFigures | None = None
     command: str | None = None

@@ -183,6 +183,39 @@ def scatter(points: Sequence[tuple[str, int, float]], *, narrow: bool = False) -
     return _svg(paint, f"Accuracy against LUTs. {listed}.", "scatter", 3.0, narrow=narrow)
 
 
+def light_lines(quantity: str, points: Sequence[Mapping[str, Any]], *, narrow: bool = False) -> Markup:
+    """Accuracy against light: of all pixels with its interval, and of the worst image.
+
+    Args:
+        quantity: what varies, ``exposure`` or ``haze``.
+        points: as in `wnn2hdl.report.LightFigures`, ascending.
+        narrow: whether it is for narrow windows.
+    """
+    values = [point["value"] for point in points]
+    shares = [100 * point["accuracy"] for point in points]
+    worst = [100 * point["worst_image"]["accuracy"] for point in points]
+
+    def paint(axes: "Axes") -> None:
+        if all(point["interval"] for point in points):
+            low, high = ([100 * point["interval"][end] for point in points] for end in (0, 1))
+            axes.fill_between(values, low, high, color=RULE, linewidth=0)
+        axes.plot(values, shares, color=ACCENT, marker="o", markersize=5)
+        axes.plot(values, worst, color=MUTED, marker="o", markersize=3, linestyle=(0, (3, 2)), linewidth=1)
+        for line, text in ((shares, "all images"), (worst, "worst image")):
+            axes.annotate(
+                text, (values[-1], line[-1]), xytext=(0, 8), textcoords="offset points", ha="right", color=INK
+            )
+        axes.set_ylim(min(0.98 * min(worst), 50), 102)
+        axes.set_xlabel(quantity)
+        axes.set_ylabel("pixels right, %")
+
+    listed = "; ".join(
+        f"{value:g}: {share:.2f} %, worst image {least:.2f} %"
+        for value, share, least in zip(values, shares, worst, strict=True)
+    )
+    return _svg(paint, f"Accuracy against {quantity}. {listed}.", f"light-{quantity}", 2.6, narrow=narrow)
+
+
 _CORNERS = ((7, 5), (7, -14), (-7, 5), (-7, -14), (7, 19), (7, -28), (-7, 19), (-7, -28))
 """Where a label may stand, in points from its place; on the left it ends there."""
 
@@ -240,7 +273,7 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
         figure = Figure(figsize=(_NARROW_WIDTH if narrow else _WIDTH, height), layout="constrained")
         axes = figure.add_subplot()
         axes.tick_params(axis="y", length=0)
-        axes.spines["left"].set_visible(prefix == "scatter")
+        axes.spines["left"].set_visible(prefix not in ("luts", "cubes"))
         paint(axes)
         return _themed(figure, title, prefix, narrow=narrow)
 

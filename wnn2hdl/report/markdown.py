@@ -7,7 +7,7 @@ from typing import Any
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.markdown import MISSING, escaped, table
 from wnn2hdl.report.charts import published
-from wnn2hdl.report.page import MANY_TABLES, form, plain_options, simulations
+from wnn2hdl.report.page import MANY_TABLES, form, light_curves, plain_options, simulations
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -48,6 +48,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         _utilisation(report),
         _published(report),
         _answers(report),
+        _light(report),
         _minimised(report["minimised"]),
         _simulated(report["options"]),
         _mapping("Seconds", "stage", report["seconds"]),
@@ -136,6 +137,27 @@ def _answers(report: Mapping[str, Any]) -> str:
         ]
     answers = [(figure, value) for figure, value in answers if value != MISSING]
     return f"## Answers\n\n{table(['figure', 'value'], answers)}" if answers else ""
+
+
+def _light(report: Mapping[str, Any]) -> str:
+    curves = light_curves(report)
+    if not curves:
+        return ""
+    rows = (
+        [
+            f"{quantity} {point['value']:g}",
+            form(point["accuracy"], "percent"),
+            " to ".join(form(end, "percent") for end in point["interval"] or ()) or MISSING,
+            point["worst_image"]["name"],
+            form(point["worst_image"]["accuracy"], "percent"),
+        ]
+        for quantity, points in curves.items()
+        for point in points
+    )
+    heads = ["light", "accuracy", "95 % interval over images", "worst image", "its accuracy"]
+    warning = report["light"]["warning"]
+    text = f"\n\n{escaped(warning)}" if warning else ""
+    return f"## In changed light\n\n{table(heads, rows)}{text}"
 
 
 def _utilisation(report: Mapping[str, Any]) -> str:

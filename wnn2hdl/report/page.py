@@ -15,7 +15,7 @@ from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.markdown import MISSING
-from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars, published
+from wnn2hdl.report.charts import cube_bars, for_all_widths, light_lines, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.schematic import draw
 
@@ -124,6 +124,7 @@ def build_page(
     measured = [part for part, figures in report["parts"].items() if figures["luts"] is not None]
     model = report.get("model")
     confusion = report.get("confusion")
+    curves = light_curves(report)
     drawn = {} if _are_many(networks) else networks
     return templates.get_template("build.html").render(
         report=report,
@@ -163,6 +164,10 @@ def build_page(
         options=plain_options(report["options"]),
         simulations=simulations(report["options"]),
         published=published(report),
+        light_charts={
+            quantity: for_all_widths(light_lines, quantity, points) for quantity, points in curves.items()
+        },
+        as_taken=as_taken(report),
         lut_chart=for_all_widths(lut_bars, report),
         few_covers=len(report["minimised"]) <= MANY_TABLES,
         cubes=_total(report["minimised"]),
@@ -170,6 +175,18 @@ def build_page(
         if 0 < len(report["minimised"]) <= MANY_TABLES
         else "",
     )
+
+
+def light_curves(report: Mapping[str, Any]) -> Mapping[str, Sequence[Mapping[str, Any]]]:
+    """The accuracies in changed light, see `wnn2hdl.report.LightFigures`; none if they were not measured."""
+    curves: Mapping[str, Sequence[Mapping[str, Any]]] = report.get("light", {}).get("curves", {})
+    return curves
+
+
+def as_taken(report: Mapping[str, Any]) -> int | None:
+    """Which exposure leaves images as they are; None if there is none, or no interval of its accuracy."""
+    points = light_curves(report).get("exposure", ())
+    return next((i for i, point in enumerate(points) if point["value"] == 1 and point["interval"]), None)
 
 
 def plain_options(options: Mapping[str, Any]) -> dict[str, Any]:

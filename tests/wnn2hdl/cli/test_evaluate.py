@@ -83,6 +83,55 @@ def test_a_model_is_measured(evaluate: Run, model: Path, folders: tuple[Path, Pa
     assert data["bootstrap"]["method"].startswith("percentile bootstrap over images")
 
 
+def test_a_model_is_measured_in_changed_light(
+    evaluate: Run, run: Run, model: Path, folders: tuple[Path, Path]
+) -> None:
+    words = (model, "--images", folders[0], "--masks", folders[1], "--exposure", "0.5..1.5", "--haze")
+    data = evaluate(*words)["model"]
+    exposures, hazes = data["light"]["exposure"], data["light"]["haze"]
+    assert [point["value"] for point in exposures] == [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5]
+    assert hazes[-1]["value"] == 0.1
+    # Neither full light nor clear air changes anything.
+    for point in exposures[5], hazes[0]:
+        assert point["accuracy"] == data["accuracy"]
+        assert point["interval"] == data["intervals"]["accuracy"]
+        assert point["worst_image"] == data["worst_image"]
+    assert exposures[0]["accuracy"] != data["accuracy"]
+    lowest = min(point["accuracy"] for point in data["per_image"].values())
+    assert data["worst_image"]["accuracy"] == lowest
+    text = run("evaluate", *words).stdout
+    assert "│ 0.5      │" in text
+    assert "lowest accuracy" in text
+
+
+def test_a_model_that_leaves_the_high_bits_out_is_warned_of(
+    run: Run, folders: tuple[Path, Path], tmp_path: Path
+) -> None:
+    pictures = ("--images", folders[0], "--masks", folders[1])
+    done = run("train", *pictures, "--bits", "R6,R5,G6,G5", "--rams", 1, "-o", tmp_path / "m.json")
+    warning = "brighter ground of the same kind may be answered differently: "
+    assert f"{warning}R7, G7 are not read, so levels wrap around" in done.stdout
+    (line,) = [x for x in run("evaluate", tmp_path / "m.json", *pictures).stdout.splitlines() if warning in x]
+    assert line.endswith("R7, G7 are not read, so levels wrap around")
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (
+            ("--table", "t.csv", "--label", "class", "--exposure", "0.8..1.5"),
+            "a table has no light: --exposure",
+        ),
+        (("--chips", ".", "--tags", "t.csv", "--haze", "0..0.1"), "light is varied with masks: --haze"),
+        (("--exposure", "1.5..0.8"), "'1.5..0.8' does not rise within 0.1..10"),
+    ],
+)
+def test_light_that_cannot_be_varied_is_refused(
+    run: Run, model: Path, words: tuple[str, ...], complaint: str
+) -> None:
+    assert complaint in run("evaluate", model, *words).complaint()
+
+
 def test_squares_are_measured_beside_pixels(
     evaluate: Run, run: Run, model: Path, folders: tuple[Path, Path]
 ) -> None:

@@ -10,6 +10,7 @@ from wnn2hdl.report import (
     BuildReport,
     Care,
     EdgeFigures,
+    LightFigures,
     Minimised,
     ModelFigures,
     PartFigures,
@@ -43,6 +44,20 @@ def report() -> dict[str, Any]:
         proof=Proof("proved", "SAT", 0.5),
         care=Care(150, 0.999996, 4096),
         edges=EdgeFigures("boundary", 240, 0.6, 0.58, 0.59, "imagery"),
+        light=LightFigures(
+            {
+                "exposure": tuple(
+                    {
+                        "value": value,
+                        "accuracy": share,
+                        "interval": (share - 0.02, share + 0.015),
+                        "worst_image": {"name": f"dim-{value:g}", "accuracy": share - 0.2},
+                    }
+                    for value, share in ((0.8, 0.8871), (1.0, 0.9165), (1.5, 0.7313))
+                )
+            },
+            "brighter ground of the same kind may be answered differently: R7 is not read",
+        ),
         accuracy=0.9165,
         model_accuracy=0.9165,
         confusion=((130900, 7121), (14767, 109356)),

@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
 
-from wnn2hdl.report.charts import cube_bars, for_all_widths, lut_bars, scatter
+from wnn2hdl.report.charts import cube_bars, for_all_widths, light_lines, lut_bars, scatter
 
 HOSTILE = "<script>alert('x')</script> & $x^2$ -- \u6797 \"q\""
 
@@ -115,7 +116,8 @@ def test_cubes_of_a_constant_table_can_be_drawn(after: int) -> None:
 def test_narrow_charts_say_the_same_in_less_width(report: dict[str, Any]) -> None:
     points = [("a build of a long name, too long for a phone", 1, 0.9), ("b", 2, 0.8)]
     charts: list[tuple[Callable[..., Any], Any]]
-    charts = [(lut_bars, report), (cube_bars, report["minimised"]), (scatter, points)]
+    charts = [(partial(light_lines, "exposure"), report["light"]["curves"]["exposure"])]
+    charts += [(lut_bars, report), (cube_bars, report["minimised"]), (scatter, points)]
     for draw, argument in charts:
         wide, narrow = (draw(argument, narrow=narrow) for narrow in (False, True))
         assert for_all_widths(draw, argument) == wide + narrow

@@ -8,6 +8,7 @@ import pytest
 from wnn2hdl.report import (
     BuildReport,
     Care,
+    LightFigures,
     Minimised,
     PartFigures,
     Proof,
@@ -30,6 +31,27 @@ FULL = BuildReport(
     proof=Proof("proved", "SAT", 0.5),
     care=Care(120, 0.9812),
     accuracy=0.9,
+    light=LightFigures(
+        {
+            "exposure": (
+                {
+                    "value": 1.5,
+                    "accuracy": 0.7313,
+                    "interval": (0.7, 0.75),
+                    "worst_image": {"name": "dim|s", "accuracy": 0.5},
+                },
+            ),
+            "haze": (
+                {
+                    "value": 0.1,
+                    "accuracy": 0.6,
+                    "interval": None,
+                    "worst_image": {"name": "a", "accuracy": 0.6},
+                },
+            ),
+        },
+        "brighter ground may be answered differently: R7 is not read",
+    ),
     options={"edges": "boundary|learned"},
     hashes={"block.v": "ab12"},
     tools={"yosys": "0.70"},
@@ -52,6 +74,9 @@ def page(report: BuildReport) -> str:
         "| block | 0.034 % | 0 % |",
         "## Published, not measured here",
         "| accuracy of the circuit | 90.00 % |",
+        "| exposure 1.5 | 73.13 % | 70.00 % to 75.00 % | dim\\|s | 50.00 % |",
+        "| haze 0.1 | 60.00 % | n/a | a | 60.00 % |",
+        "brighter ground may be answered differently: R7 is not read",
         "| pixel codes cared for | 120 |",
         "| pixel | 60 | 3 | 720 | 9 |",
         "| edges | boundary\\|learned |",

@@ -70,6 +70,21 @@ def test_every_figure_is_the_one_at_its_path(report: dict[str, Any], networks: d
     assert figures["accuracy"] == {("0.9165", "91.65 %")}
 
 
+def test_accuracy_in_changed_light_is_drawn_and_listed(
+    report: dict[str, Any], networks: dict[str, LutNetwork]
+) -> None:
+    page = build_page(report, networks)
+    figures = Outline(page).figures
+    assert figures["light.curves.exposure.2.accuracy"] == {("0.7313", "73.13 %")}
+    assert figures["light.curves.exposure.1.worst_image.name"] == {('"dim-1"', "dim-1")}
+    # The interval of the accuracy itself is the one at the exposure of 1.
+    assert "light.curves.exposure.1.interval.0" in page.split('id="light"')[0]
+    assert "0.8: 88.71 %, worst image 68.71 %" in page
+    assert "R7 is not read" in page
+    del report["light"]
+    assert 'id="light"' not in build_page(report, networks)
+
+
 def test_saturation_of_every_ram_is_drawn(report: dict[str, Any], networks: dict[str, LutNetwork]) -> None:
     strips = [x for x in Outline(build_page(report, networks)).all("span") if "data-key" in x]
     assert [float(str(x["data-value"])) for x in strips] == [0.25, 0.5, 1.0, 0.0, 0.75, 0.5]
