@@ -150,7 +150,7 @@ def run_flight(
         SearchResult(kind, half, _rows(grid, recording.poses, found, methods, acceptances, kind, half))
         for kind, half in searches.items()
     )
-    result = _result(recording, grid, calibration, searched)
+    result = _result(recording, grid, calibration, searched, read_back=known is not None)
     learned = known
     if calibration and conditions and not known:
         learned = Learned(conditions, teachers, calibration, weightless, dict(searches), acceptances)
@@ -162,6 +162,8 @@ def _result(
     grid: MapGrid,
     calibration: Calibration | None,
     searches: tuple[SearchResult, ...],
+    *,
+    read_back: bool,
 ) -> FlightResult:
     camera = calibration.cameras[0] if calibration else recording.camera
     return FlightResult(
@@ -173,6 +175,7 @@ def _result(
         searches=searches,
         map_note=recording.world.note,
         map_share=float(grid.valid.mean()),
+        read_back=read_back,
     )
 
 

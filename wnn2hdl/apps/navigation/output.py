@@ -65,6 +65,13 @@ Nothing was calibrated, so the worth of a confidence is unknown: the best positi
 given as a fix, right or wrong."""
 
 
+_READ_BACK = """\
+The calibration was read back from an earlier run. The map, the camera as given, the tolerances, the windows
+and the methods are the same as they were then. Whether this log counts headings, heights and angles as the
+earlier one did, and whether the camera is still mounted as it was, has not been checked: only frames to
+calibrate on can show it."""
+
+
 def write_results(folder: Path, result: FlightResult) -> tuple[Path, ...]:
     """Write ``flight.md``, ``flight.json``, ``table.csv``, ``frames.csv`` and one GeoJSON per search.
 
@@ -106,6 +113,7 @@ def flight_dict(result: FlightResult) -> dict[str, Any]:
         "ground_sample_distance_m": result.ground_sample_distance_m,
         "camera": {"focal_px": result.focal_px, "tilts_deg": list(result.tilts_deg)},
         "calibrated_on": list(result.calibrated_on),
+        "calibration_read_back": result.read_back,
         "largest_geodesic_difference_m": result.largest_geodesic_difference_m,
         "searches": [
             {
@@ -200,6 +208,7 @@ def flight_markdown(result: FlightResult) -> str:
         f"{fitted}: "
         f"focal length {result.focal_px:.1f} px, forward tilt {tilts} degrees.",
         _left_out(result),
+        _READ_BACK if result.read_back else "",
         _STATISTICS,
         f"They differ from geodesic distances by at most {difference:.2f} m."
         if difference is not None

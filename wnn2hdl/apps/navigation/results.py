@@ -207,6 +207,7 @@ class FlightResult:
         searches: the same methods, searched in one or two ways.
         map_note: what had to be assumed about the map's bands and pages; empty if nothing.
         map_share: share of the grid, which is north up, that the map shows, 0 to 1.
+        read_back: whether the calibration is an earlier run's.
     """
 
     map_name: str
@@ -217,6 +218,7 @@ class FlightResult:
     searches: tuple[SearchResult, ...]
     map_note: str = ""
     map_share: float = 1.0
+    read_back: bool = False
 
     @property
     def largest_geodesic_difference_m(self) -> float | None:

@@ -36,6 +36,7 @@ def summary(run: FlightRun) -> dict[str, Any]:
         "methods": first["methods"],
         "searches": searches,
         "calibration": run.learned.calibration.report() if run.learned else None,
+        "calibration_read_back": run.result.read_back,
         "largest_geodesic_difference_m": run.result.largest_geodesic_difference_m,
     }
 

@@ -65,6 +65,7 @@ def test_what_was_learned_before_gives_the_same_fixes(run: FlightRun, flying: An
     again = flying({"window": 40.0}, known=run.learned, keys=["grey", "perspective-weightless"])
     assert again.learned == run.learned
     assert again.result.calibrated_on == run.result.calibrated_on
+    assert (run.result.read_back, again.result.read_back) == (False, True)
     before, now = run.rows(run.result.searches[0]), again.rows(again.result.searches[0])
     assert list(now) == [
         "perspective-weightless",

@@ -88,6 +88,12 @@ def test_markdown_says_what_is_not_calibrated_left_out_or_assumed() -> None:
     assert "shows no map" not in plain
 
 
+def test_markdown_says_what_of_a_calibration_that_was_read_back_is_not_checked() -> None:
+    page = flight_markdown(replace(RESULT, read_back=True))
+    assert "whether the camera is still mounted as it was, has not been checked" in page
+    assert "has not been checked" not in flight_markdown(RESULT)
+
+
 def test_markdown_says_what_is_nearer_than_the_weightless_edges() -> None:
     own, nearer = replace(EDGES, weightless=True), MethodResult("grey levels", (fix(1, 1.0),))
     page = flight_markdown(replace(RESULT, searches=(SearchResult("map", None, (own, nearer)),)))
