@@ -9,10 +9,14 @@ EXTRAS ?=
 comma := ,
 STAMP := $(VENV)/.installed$(subst $(comma),-,$(EXTRAS))
 
-.PHONY: demo test lint types layers docs check clean
+.PHONY: demo picture test lint types layers docs check clean
 
 demo: $(STAMP)
 	$(BIN)/wnn2hdl demo
+
+# The picture at the top of README, made by the demo.
+picture: demo
+	cp build/demo/overview.jpg docs/overview.jpg
 
 # A process for each core, but each needs up to a gigabyte. The tests of a file share what they build.
 test: $(STAMP)

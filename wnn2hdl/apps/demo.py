@@ -6,6 +6,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from wnn2hdl.apps.deforestation.local import run_locally as scan_locally
 from wnn2hdl.apps.deforestation.options import ScanOptions
 from wnn2hdl.apps.deforestation.output import OVERLAY_FILE
@@ -14,17 +17,19 @@ from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
 from wnn2hdl.apps.navigation.methods import WEIGHTLESS
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.apps.navigation.summary import write_run
+from wnn2hdl.apps.overview import Overview, write_overview
 from wnn2hdl.apps.sweep import Outcome, Recipe, discard_another, draw, grid, present, run_locally, run_sweep
 from wnn2hdl.build.compile import Build, compile_model
 from wnn2hdl.build.folder import require_replaceable
 from wnn2hdl.build.planning import CompileOptions
-from wnn2hdl.build.playback import play
+from wnn2hdl.build.playback import Playback, play
 from wnn2hdl.build.reporting import open_entries
+from wnn2hdl.build.verification import open_build
 from wnn2hdl.dataset import Dataset, from_masks
 from wnn2hdl.encode import high_bits
 from wnn2hdl.errors import ExtraMissingError
 from wnn2hdl.files import make_folder, write_text
-from wnn2hdl.images import write_png
+from wnn2hdl.images import read_rgb, write_png
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.progress import Progress
@@ -54,7 +59,7 @@ CALIBRATION_FRAMES = 5
 WINDOW_M = 95.0
 """Half the side of the window that the reference searched."""
 
-PAGE, REFERENCE_BUILD, SMALLEST_BUILD = "index.html", "reference", "smallest"
+PAGE, OVERVIEW, REFERENCE_BUILD, SMALLEST_BUILD = "index.html", "overview.jpg", "reference", "smallest"
 """Names in the demo's folder."""
 
 REFERENCE = "the reference design's discriminators (n = 4, k = 16), on the colours of the training landscapes"
@@ -92,7 +97,7 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
 
     Args:
         folder: gets the landscapes (``training``, ``test``), ``sweep``, the builds ``reference`` and
-            ``smallest``, ``scan``, ``flight`` and the page.
+            ``smallest``, ``scan``, ``flight``, the page, and `OVERVIEW`, one picture of it all.
         seed: of the tuple mappings.
         progress: called with every stage.
 
@@ -126,6 +131,7 @@ def run_demo(folder: Path, seed: int, progress: Progress) -> Demo:
         flight = _fly(folder / "flight", seed, progress)
     except ExtraMissingError as error:
         missing = error.line()
+    _show(folder, smallest, read_rgb(picture), playback, scanned is not None, flight)
     entries = open_entries([reference.folder, smallest.folder], folder / PAGE)
     exhibits = _exhibits(outcome, scanned, flight)
     lead = f"From generated landscapes: {REFERENCE} (reference), and {SMALLEST} (smallest)."
@@ -175,6 +181,21 @@ def _fly(folder: Path, seed: int, progress: Progress) -> FlightRun:
     make_folder(folder)
     write_run(run, folder)
     return run
+
+
+def _show(
+    folder: Path,
+    build: Build,
+    photo: NDArray[np.uint8],
+    playback: Playback,
+    mapped: bool,
+    flight: FlightRun | None,
+) -> None:
+    """Write all of it as one picture."""
+    luts = {part: figures["luts"] for part, figures in build.report["parts"].items()}
+    design, _, _ = open_build(build.folder)
+    overlay = read_rgb(folder / "scan" / OVERLAY_FILE) if mapped else None
+    write_overview(folder / OVERVIEW, Overview(photo, playback, design, luts, overlay, flight))
 
 
 def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRun | None) -> list[Exhibit]:

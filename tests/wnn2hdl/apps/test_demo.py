@@ -13,6 +13,7 @@ from wnn2hdl.apps.navigation import recording
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.cli import main
 from wnn2hdl.errors import InputError
+from wnn2hdl.images import picture_size
 from wnn2hdl.ir import WisardModel
 
 
@@ -46,6 +47,7 @@ def test_every_stage_leaves_what_the_page_leads_to(tmp_path: Path, monkeypatch: 
     assert all((tmp_path / link).is_file() for link in links)
     assert made.reference.failure is made.smallest.failure is None
     assert made.smallest.report["parts"]["pixel"]["luts"] <= demo.LUTS_PER_PIXEL
+    assert picture_size(tmp_path / demo.OVERVIEW) == (862, 1200)
     assert made.windows == (demo.SIDE - 2) ** 2
     assert made.flight is not None
     (*_, whole) = made.flight.result.searches
@@ -98,4 +100,5 @@ def test_without_the_extra_map_and_flight_are_left_out_and_named(
     page = made.page.read_text(encoding="utf-8")
     assert "sweep/index.html" in page
     assert "flight" not in page
+    assert (tmp_path / demo.OVERVIEW).is_file()
     assert open_build(tmp_path / "smallest")[0].mode == "exact"
