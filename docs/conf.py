@@ -9,7 +9,13 @@ project = "wnn2hdl"
 author = "the wnn2hdl developers"
 version = release = wnn2hdl.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.doctest", "sphinx_click"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.doctest",
+    "sphinx.ext.napoleon",
+    "sphinx_click",
+]
 exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = "wnn2hdl"
@@ -18,7 +24,10 @@ myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 3
 html_show_copyright = False
 smartquotes = False  # it would turn two hyphens, as options have, into a dash
+autodoc_typehints = "none"  # signatures have names; docstrings say what they mean
+default_role = "literal"  # docstrings name code in single backquotes
 nitpicky = True
+nitpick_ignore_regex = [("py:(class|exc)", ".*")]  # types and errors have no pages of their own
 suppress_warnings = ["epub.unknown_project_files"]
 linkcheck_ignore = [r"https://doi\.org/"]  # publishers' sites refuse robots
 
