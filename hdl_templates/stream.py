@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from amaranth.hdl import Array, Module, Mux, Signal, Value
+from amaranth.hdl import Module, Mux, Signal, Value
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,10 @@ class Head:
 
 def queued(
     m: Module,
+    name: str,
+    *,
     valid: Value,
     word: Value,
-    *,
     latency: int,
     ready: Value,
     taken: Value,
@@ -37,6 +38,7 @@ def queued(
 
     Args:
         m: the module under construction.
+        name: what the names of the registers begin with.
         valid: whether a beat of the stream is offered.
         word: what comes out of the pipeline, ``latency`` cycles after the beat that it belongs to.
         latency: cycles of the pipeline; 0 where ``word`` is a function of the beat.
@@ -47,35 +49,46 @@ def queued(
         The head.
     """
     places = latency + 1
-    head = Head(Signal(name="head_valid"), Signal(len(word), name="head", reset_less=True))
-    moves = Signal(name="head_moves")
+    head = Head(Signal(name=f"{name}_head_valid"), Signal(len(word), name=f"{name}_head", reset_less=True))
+    moves = Signal(name=f"{name}_head_moves")
     m.d.comb += moves.eq(~head.valid | taken)
 
-    accepted = Signal(name="accepted")
-    # Beats that were accepted and are not at the head yet.
-    waiting = Signal(range(places + 1), name="waiting")
-    m.d.comb += [ready.eq(waiting != places), accepted.eq(valid & ready)]
+    # Whether another beat has a place: of its own, since a pipeline before the queue moves by it.
+    room = Signal(name=f"{name}_room", init=1)
+    accepted = Signal(name=f"{name}_accepted")
+    m.d.comb += [ready.eq(room), accepted.eq(valid & room)]
     arrives: Value = accepted
     for cycle in range(1, latency + 1):
-        later = Signal(name=f"arrives_{cycle}")
+        later = Signal(name=f"{name}_arrives_{cycle}")
         m.d.sync += later.eq(arrives)
         arrives = later
 
-    stored = Signal(range(places + 1), name="stored") if latency else waiting
+    stored = Signal(range(places + 1), name=f"{name}_stored") if latency else ~room
     any_stored = stored.any()
-    leaves = Signal(name="leaves")
-    stores = Signal(name="stores")
+    leaves = Signal(name=f"{name}_leaves")
+    stores = Signal(name=f"{name}_stores")
     m.d.comb += [
         leaves.eq(moves & (any_stored | arrives)),
         stores.eq(arrives & ~(moves & ~any_stored)),
     ]
-    m.d.sync += waiting.eq(waiting + accepted - leaves)
     if latency:
-        m.d.sync += stored.eq(stored + stores - (moves & any_stored))
-    words = [Signal(len(word), name=f"stored_{place}", reset_less=True) for place in range(places)]
+        # Beats that were accepted and are not at the head yet.
+        waiting = Signal(range(places + 1), name=f"{name}_waiting")
+        waits = Signal(range(places + 1), name=f"{name}_waits")
+        m.d.comb += waits.eq(waiting + accepted - leaves)
+        m.d.sync += [
+            waiting.eq(waits),
+            room.eq(waits != places),
+            stored.eq(stored + stores - (moves & any_stored)),
+        ]
+    else:
+        m.d.sync += room.eq(moves | (room & ~valid))
+    words = [Signal(len(word), name=f"{name}_stored_{place}", reset_less=True) for place in range(places)]
     with m.If(stores):
         m.d.sync += [later.eq(earlier) for earlier, later in zip([word, *words], words, strict=False)]
-    oldest = Array(words)[(stored - 1)[: len(stored)]] if latency else words[0]
+    oldest: Value = words[0]
+    for place, later in enumerate(words[1:], start=1):
+        oldest = Mux(stored == place + 1, later, oldest)
     with m.If(moves):
         m.d.sync += [head.valid.eq(any_stored | arrives), head.word.eq(Mux(any_stored, oldest, word))]
     return head

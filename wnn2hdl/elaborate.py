@@ -47,10 +47,16 @@ def video_core(circuit: Circuit, video: VideoFormat, *, style: Style) -> VideoCo
         video: its streams.
         style: how its LUT networks are written.
     """
-    classifier, *window = (
-        component(node.circuit, style=style) for node in circuit.nodes if isinstance(node, Instance)
+    pixels, windows = (
+        [
+            component(node.circuit, style=style)
+            for node in circuit.nodes
+            if isinstance(node, Instance) and node.name == name
+            for _ in range(video.pixels_per_clock)
+        ]
+        for name in ("classifier", "window")
     )
-    return VideoCore(video=video, pixel=classifier, window=window[0] if window else None)
+    return VideoCore(video=video, pixels=pixels, windows=windows)
 
 
 class CircuitComponent(Part):

@@ -28,6 +28,14 @@ PATTERNS = np.random.default_rng(0).random(512) < 0.5
 """An edge filter that depends on each of its inputs."""
 
 
+def delayed(m: Module, value: Any, cycles: int) -> Any:
+    for _ in range(cycles):
+        later = Signal(len(value), reset_less=True)
+        m.d.sync += later.eq(value)
+        value = later
+    return value
+
+
 class Pixel(Part):
     """The two high bits of red as a class, ``latency`` cycles later."""
 
@@ -37,57 +45,70 @@ class Pixel(Part):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        value = self.rgb[24 - self.width :]
-        for _ in range(self.latency):
-            later = Signal(self.width, reset_less=True)
-            m.d.sync += later.eq(value)
-            value = later
-        m.d.comb += self.class_bits.eq(value)
+        m.d.comb += self.class_bits.eq(delayed(m, self.rgb[24 - self.width :], self.latency))
         return m
 
 
 class Window(Part):
-    """`PATTERNS` as a look-up table."""
+    """`PATTERNS` as a look-up table, ``latency`` cycles later."""
 
     module_name = "window"
 
-    def __init__(self) -> None:
+    def __init__(self, latency: int) -> None:
+        self.latency = latency
         super().__init__({"bits": In(9), "edge_bit": Out(1)})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        value = Signal()
         with m.Switch(self.bits):
             for code in np.flatnonzero(PATTERNS).tolist():
                 with m.Case(code):
-                    m.d.comb += self.edge_bit.eq(1)
+                    m.d.comb += value.eq(1)
+        m.d.comb += self.edge_bit.eq(delayed(m, value, self.latency))
         return m
 
 
-def core(answer: Answer = "both", *, classes: int = 1, latency: int = 0) -> VideoCore:
-    video = VideoFormat(max_width=WIDTH, answer=answer)
-    return VideoCore(video=video, pixel=Pixel(classes, latency), window=Window() if video.has_edges else None)
+def core(answer: Answer = "both", *, classes: int = 1, latency: int = 0, pixels: int = 1) -> VideoCore:
+    video = VideoFormat(max_width=WIDTH * pixels, answer=answer, pixels_per_clock=pixels)
+    return VideoCore(
+        video=video,
+        pixels=[Pixel(classes, latency) for _ in range(pixels)],
+        windows=[Window(latency) for _ in range(pixels)] if video.has_edges else [],
+    )
 
 
 def frame(height: int, width: int, seed: int) -> NDArray[np.uint8]:
     return np.random.default_rng(seed).integers(0, 256, (height, width, 3), dtype=np.uint8)
 
 
-def sent(pixels: NDArray[np.uint8]) -> list[Beat]:
-    height, width = pixels.shape[:2]
-    words = VideoFormat().pixels(pixels)
+def marked(words: Any, bits: int, per_clock: int) -> list[Beat]:
+    """Words of pixels as beats; the last column is repeated up to whole beats."""
+    rows = [[*row, *[row[-1]] * (-len(row) % per_clock)] for row in words.tolist()]
     return [
-        (int(words[y, x]), int(y == x == 0), int(x == width - 1)) for y in range(height) for x in range(width)
+        (
+            sum(word << bits * place for place, word in enumerate(row[x : x + per_clock])),
+            int(y == x == 0),
+            int(x + per_clock == len(row)),
+        )
+        for y, row in enumerate(rows)
+        for x in range(0, len(row), per_clock)
     ]
 
 
-def answers(pixels: NDArray[np.uint8], answer: Answer = "both", classes: int = 1) -> list[Beat]:
-    height, width = pixels.shape[:2]
+def sent(pixels: NDArray[np.uint8], per_clock: int = 1) -> list[Beat]:
+    return marked(VideoFormat().pixels(pixels), 24, per_clock)
+
+
+def answers(
+    pixels: NDArray[np.uint8], answer: Answer = "both", classes: int = 1, per_clock: int = 1
+) -> list[Beat]:
+    pixels = VideoFormat(pixels_per_clock=per_clock).padded(pixels)
     found = pixels[..., 0] >> np.uint8(8 - classes)
     edges = PATTERNS[framed_window_codes(found != 0)]
-    words = VideoFormat(answer=answer).answers(found, edges if answer != "class" else None)
-    return [
-        (int(words[y, x]), int(y == x == 0), int(x == width - 1)) for y in range(height) for x in range(width)
-    ]
+    return marked(
+        VideoFormat(answer=answer).answers(found, edges if answer != "class" else None), 8, per_clock
+    )
 
 
 def run(
@@ -109,7 +130,7 @@ def run(
 
     async def bench(ctx: Any) -> None:
         nonlocal took
-        if dut.window is not None:
+        if dut.windows:
             ctx.set(dut.height, height)
         left = [None, *beats][::-1]
         offered, held, idle, cycle = False, None, 0, 0
@@ -153,10 +174,11 @@ FRAMES = [frame(4, 5, 1), frame(4, 8, 2), frame(1, 3, 3), frame(3, 1, 4), frame(
 
 @pytest.mark.parametrize("answer", ["class", "edge", "both"])
 @pytest.mark.parametrize("latency", [0, 1, 3])
-def test_frames_of_several_sizes_pass_with_pauses(answer: Answer, latency: int) -> None:
-    beats = [beat for pixels in FRAMES for beat in sent(pixels)]
-    found, _ = run(core(answer, latency=latency), beats, height=4)
-    assert found == [beat for pixels in FRAMES for beat in answers(pixels, answer)]
+@pytest.mark.parametrize("per_clock", [1, 2, 4])
+def test_frames_of_several_sizes_pass_with_pauses(answer: Answer, latency: int, per_clock: int) -> None:
+    beats = [beat for pixels in FRAMES for beat in sent(pixels, per_clock)]
+    found, _ = run(core(answer, latency=latency, pixels=per_clock), beats, height=4)
+    assert found == [beat for pixels in FRAMES for beat in answers(pixels, answer, per_clock=per_clock)]
 
 
 def test_an_edge_looks_at_foreground_and_the_class_is_sent_whole() -> None:
@@ -172,8 +194,8 @@ def test_a_pixel_passes_in_each_cycle_and_the_last_line_takes_as_long_as_a_line(
     beats = sent(pixels) + sent(pixels)
     found, took = run(core(latency=latency), beats, height=6, offers=1, takes=1)
     assert found == answers(pixels) * 2
-    # One cycle of reset, and the repeated line below the first frame's last.
-    assert took == 1 + len(beats) + 8
+    # One cycle of reset, the repeated line below the first frame's last, and until its end is noticed.
+    assert took == 1 + len(beats) + 8 + 4
 
 
 def test_the_last_line_comes_out_without_another_frame() -> None:
@@ -254,12 +276,10 @@ def test_any_mix_of_frames_and_faults_leaves_the_next_frame_whole() -> None:
     assert run(core(), beats, height=4)[0] == expected + answers(FRAMES[0])
 
 
-def test_a_core_has_a_window_if_it_sends_edges_and_that_has_no_registers() -> None:
-    with pytest.raises(ValueError, match="for edges"):
-        VideoCore(video=VideoFormat(), pixel=Pixel(1, 0), window=None)
-    with pytest.raises(ValueError, match="for edges"):
-        VideoCore(video=VideoFormat(answer="class"), pixel=Pixel(1, 0), window=Window())
-    late = Window()
-    late.latency = 1
-    with pytest.raises(ValueError, match="combinational"):
-        VideoCore(video=VideoFormat(), pixel=Pixel(1, 0), window=late)
+def test_a_core_has_a_window_for_each_pixel_if_it_sends_edges() -> None:
+    one, video = [Pixel(1, 0)], VideoFormat()
+    for wrong, windows in ((video, []), (VideoFormat(answer="class"), [Window(0)])):
+        with pytest.raises(ValueError, match="for each"):
+            VideoCore(video=wrong, pixels=one, windows=windows)
+    with pytest.raises(ValueError, match="for each"):
+        VideoCore(video=VideoFormat(pixels_per_clock=2), pixels=one, windows=[Window(0)])

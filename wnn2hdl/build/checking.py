@@ -175,13 +175,14 @@ class _Simulations:
                 counts[part] = len(next(iter(inputs.values())))
                 self.keys[part] = remembered.simulation_key(circuit, design.style, inputs, answers)
         if design.video is not None:
-            core, beats = design.circuit, sample_frames(design)
+            core, beats = design.top, sample_frames(design)
             counts[core.name] = len(beats)
             self.keys[core.name] = remembered.simulation_key(
                 core,
                 design.style,
                 {"pixels": beats.pixels, "starts": beats.starts, "ends": beats.ends},
                 {"answers": beats.answers},
+                design.video,
             )
         self.passed = {
             part: counts[part] for part, key in self.keys.items() if not afresh and remembered.passed(key)

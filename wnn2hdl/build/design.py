@@ -82,6 +82,11 @@ class Design:
         return self.circuit if self.stages is None else pipelined(self.circuit, self.stages)
 
     @property
+    def latency(self) -> int:
+        """Cycles from inputs to outputs; of a video core those of its circuits, one after the other."""
+        return self.top.latency if self.video is None else sum(node.latency for node in self.top.nodes)
+
+    @property
     def parts(self) -> dict[str, Circuit]:
         """The circuits of the design by name, innermost first.
 
@@ -131,15 +136,19 @@ class Design:
                 f"The care set of the {name} holds {int(care.sum())} of {len(care)} codes."
                 for name, care in self.cared.items()
             ]
-        if self.stages is not None:
+        if self.stages is not None and self.video is not None:
+            cycles = ", ".join(f"{name} {circuit.latency}" for name, circuit in self.parts.items())
+            lines.append(f"Registers in its circuits, in cycles: {cycles}.")
+        elif self.stages is not None:
             cycles = "1 cycle" if self.top.latency == 1 else f"{self.top.latency} cycles"
             lines.append(
                 f"A pipeline of latency {cycles} that takes a new input in each; its outputs are registers."
             )
         made = f"LUT networks written as {self.style}, effort {effort}."
         if self.video is not None:
+            kind = "grey" if self.video.is_mono else f"channels {self.video.format} from the low byte"
             lines.append(
-                f"Channels {self.video.channels} from the low byte, answer {self.video.answer}, "
+                f"Pixels: {kind}, {self.video.pixels_per_clock} per clock; answer {self.video.answer}, "
                 f"lines of up to {self.video.max_width} pixels."
             )
         if self.edges is not None:

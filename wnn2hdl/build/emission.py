@@ -78,7 +78,7 @@ def top_part(design: Design) -> Part:
     """The hardware of a design."""
     if design.video is None:
         return elaborate.component(design.top, style=design.style)
-    return elaborate.video_core(design.circuit, design.video, style=design.style)
+    return elaborate.video_core(design.top, design.video, style=design.style)
 
 
 def generators() -> dict[str, str]:
@@ -116,11 +116,12 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         bench = testbench(part, name=top, count=count, vectors_file=files.vectors.name, sources=sources)
     else:
         frames = sample_frames(design)
-        data = stream_vectors(frames)
+        data = stream_vectors(frames, design.video)
         bench = stream_testbench(
             name=top,
+            video=design.video,
             count=len(frames),
-            height=frames.height if design.video.has_edges else None,
+            height=frames.height,
             vectors_file=files.vectors.name,
             sources=sources,
         )

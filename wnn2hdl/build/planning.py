@@ -27,14 +27,14 @@ from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.features import FixedPoint, Thermometer
 from wnn2hdl.ir.models import AnyModel, LogicModel, TableSumModel
-from wnn2hdl.ir.video import Answer
+from wnn2hdl.ir.video import MAX_CLOCK, Answer
 from wnn2hdl.lower.table import care_set
-from wnn2hdl.lower.targets import Ingredients, target_for
+from wnn2hdl.lower.targets import Ingredients, Target, target_for
 from wnn2hdl.minimise import Minimised
 from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import AlphaMeaning, Reading
-from wnn2hdl.schedule import Stages, for_clock, for_stages
+from wnn2hdl.schedule import Stages, for_clock, for_instances, for_stages
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,9 @@ class CompileOptions:
         effort: 0 to 3, how long to look for a smaller circuit.
         max_luts: LUTs that the circuit may take; more than the device has allow a circuit that cannot fit it.
         max_width: of a video core: pixels of the longest line.
-        channels: of a video core: those of a pixel, from the least significant byte.
+        format: of a video core: a pixel's channels from the least significant byte, or ``mono``.
         answer: of a video core: ``class``, ``edge`` or ``both``.
+        pixels_per_clock: of a video core: 1, 2 or 4.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
         test_table: file of labelled feature vectors for the same, of a model that reads these.
@@ -96,8 +97,9 @@ class CompileOptions:
     effort: int = 1
     max_luts: int | None = None
     max_width: int = VideoFormat.max_width
-    channels: str = VideoFormat.channels
+    format: str = VideoFormat.format
     answer: Answer = VideoFormat.answer
+    pixels_per_clock: int = VideoFormat.pixels_per_clock
     test_images: Path | None = None
     test_masks: Path | None = None
     test_table: Path | None = None
@@ -177,7 +179,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
     model = model if pruned is None else pruned.model
     target = target_for(model, options.target)
     edges, care, seen = None, None, None
-    video = VideoFormat(options.max_width, options.channels, options.answer) if target.streams else None
+    video = _video(options) if target.streams else None
     has_edges = target.has_edges and (video is None or video.has_edges)
     if isinstance(model, WisardModel) and isinstance(model.encoder, PictureEncoder):
         edges = _edge_filter(model, options, progress) if has_edges else None
@@ -189,8 +191,6 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         care = _care_sets(model, options, seen) if seen is not None else None
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
-    if video is not None and options.pipelined:
-        raise InputError("a video core has registers of its own", hint="leave --stages and --clock out")
     lowered = target.lower(Ingredients(model, edges, care, video))
     minimised = minimise(lowered, options.effort, progress, by=minimise_once)
     design = Design(
@@ -202,7 +202,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         options.style,
         name,
         (),
-        _stages(minimised.circuit, options),
+        _stages(minimised.circuit, target, options),
         video,
     )
     design = replace(design, header=design.made_by(options.effort, generators()))
@@ -245,7 +245,20 @@ def with_input(model: AnyModel, words: str) -> AnyModel:
     return replace(model, encoder=narrowed)
 
 
-def _stages(circuit: Circuit, options: CompileOptions) -> Stages | None:
+def _video(options: CompileOptions) -> VideoFormat:
+    """The streams of a video core; raises InputError for a clock that its own registers are not made for."""
+    if options.clock is not None and options.clock > MAX_CLOCK:
+        raise InputError(
+            "a video core is not made for this clock",
+            value=f"{options.clock:g} MHz",
+            hint=f"give at most --clock {MAX_CLOCK:g}, and more --pixels-per-clock",
+        )
+    return VideoFormat(options.max_width, options.format, options.answer, options.pixels_per_clock)
+
+
+def _stages(circuit: Circuit, target: Target, options: CompileOptions) -> Stages | None:
+    if target.streams:
+        return for_instances(circuit, stages=options.stages, megahertz=options.clock)
     if options.clock is not None:
         return for_clock(circuit, options.clock)
     return None if options.stages is None else for_stages(circuit, options.stages)

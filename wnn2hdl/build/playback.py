@@ -153,6 +153,10 @@ def _play_frame(
             value=f"{width}x{height}, allowed are {design.video.max_width}x{MAX_HEIGHT}",
             hint="compile with a larger --max-width, or give a smaller picture",
         )
+    if design.video.is_mono and (rgb != rgb[..., :1]).any():
+        raise InputError(
+            "the core takes grey pixels", value="a picture in colours", hint="give a grey picture"
+        )
     pixels = {"rgb": pixel_bits(rgb.reshape(-1, len(CHANNELS)))}
     cared = _check_cared(design, "pixel", pixels, design.parts["pixel"].evaluate(pixels))
     classes, edges = framed_answers(design, rgb)
@@ -163,18 +167,17 @@ def _play_frame(
     progress("simulating pixels", 0, len(frame))
     started = time.perf_counter()
     if simulator == "amaranth":
-        core = video_core(design.circuit, design.video, style=design.style)
+        core = video_core(design.top, design.video, style=design.style)
         seconds = simulate_stream(
             core, frame, progress=partial(progress, "simulating pixels"), vcd=vcd
         ).seconds
     else:
         module = design.module(design.circuit.name)
-        told = design.video.has_edges
-        seconds = run_stream(frame, module, files.simulated, simulator, told=told)
+        seconds = run_stream(frame, design.video, module, files.simulated, simulator)
         progress("simulating pixels", len(frame), len(frame))
     compile_seconds = time.perf_counter() - started - seconds if simulator != "amaranth" else 0.0
-    sent = frame.answers.reshape(height, width)
-    return Playback(len(frame), cared, seconds, compile_seconds, classes != 0, edges, sent)
+    sent = frame.answers.reshape(height, -1)[:, :width]
+    return Playback(height * width, cared, seconds, compile_seconds, classes != 0, edges, sent)
 
 
 def _check_cared(design: Design, part: str, inputs: Samples, answers: Samples) -> float:

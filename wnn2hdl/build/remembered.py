@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import hdl_templates
 import wnn2hdl
-from wnn2hdl.ir import Style
+from wnn2hdl.ir import Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_to_json
 from wnn2hdl.synth import cache
@@ -42,12 +42,15 @@ def code_digest() -> str:
     return digest.hexdigest()
 
 
-def simulation_key(circuit: Circuit, style: Style, inputs: Arrays, answers: Arrays) -> Key:
+def simulation_key(
+    circuit: Circuit, style: Style, inputs: Arrays, answers: Arrays, video: VideoFormat | None = None
+) -> Key:
     """All that a simulation depends on: the circuit and what draws it, vectors and answers, the simulator."""
     return {
         "check": "simulation",
         "circuit": cache.digest(json.dumps(circuit_to_json(circuit))),
         "style": style,
+        "video": "" if video is None else json.dumps(video.to_json()),
         "inputs": _digest(inputs),
         "answers": _digest(answers),
         "simulator": version("amaranth"),

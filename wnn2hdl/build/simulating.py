@@ -52,7 +52,7 @@ def simulate_parts(design: Design, parts: Sequence[str]) -> tuple[dict[str, int]
 def _simulate(design: Design, part: str) -> SimulationResult:
     if part not in design.parts:
         assert design.video is not None
-        core = video_core(design.circuit, design.video, style=design.style)
+        core = video_core(design.top, design.video, style=design.style)
         return simulate_stream(core, sample_frames(design))
     claim = design.specification.claims[part]
     assert claim.stimulus is not None

@@ -111,7 +111,7 @@ def false_statements(
     found = {
         "target": design.target.name,
         "mode": design.mode,
-        "latency": design.top.latency,
+        "latency": design.latency,
         "stage_ps": None if design.stages is None else design.stages.period,
         "parts": {part: asdict(result.resources) for part, result in syntheses.items()},
         "count": OPTIONS,

@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.build.design import Design
+from wnn2hdl.errors import InputError
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
 from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits
 from wnn2hdl.ir.video import Beats
 from wnn2hdl.ir.window import framed_window_codes
@@ -43,21 +45,43 @@ def framed_answers(
 
 
 def beats(design: Design, pictures: Sequence[NDArray[np.uint8]]) -> Beats:
-    """Pictures as frames that go through the core, one after the other."""
+    """Pictures as frames that go through the core, one after the other; grey ones if its pixels are."""
     assert design.video is not None
+    padded = [design.video.padded(picture) for picture in pictures]
     return Beats.of(
-        [design.video.pixels(picture) for picture in pictures],
-        [design.video.answers(*framed_answers(design, picture)) for picture in pictures],
+        [design.video.pixels(picture) for picture in padded],
+        [design.video.answers(*framed_answers(design, picture)) for picture in padded],
+        design.video.pixels_per_clock,
     )
 
 
 def sample_frames(design: Design) -> Beats:
-    """Frames of several sizes on which a core is simulated, of random cared-for pixels."""
+    """Frames of several sizes on which a core is simulated, of random cared-for pixels.
+
+    Raises:
+        InputError: its pixels are grey, and none that is grey is cared for.
+    """
     assert design.video is not None
-    stimulus = design.specification.claims["pixel"].stimulus
-    assert stimulus is not None
-    pixels = bits_to_pixels(stimulus()["rgb"])[:, 0]
+    pixels = _sample_pixels(design)
     rng = np.random.default_rng(_SEED)
     longest = design.video.max_width
     sizes = [(2, longest), *((height, min(width, longest)) for height, width in _SIZES)]
     return beats(design, [pixels[rng.integers(len(pixels), size=size)] for size in sizes])
+
+
+def _sample_pixels(design: Design) -> NDArray[np.uint8]:
+    """Cared-for pixels, uint8 ``[pixels, 3]``: of a core of grey pixels all that are grey."""
+    assert design.video is not None
+    claim = design.specification.claims["pixel"]
+    if design.video.is_mono:
+        greys = np.repeat(np.arange(1 << CHANNEL_BITS, dtype=np.uint8)[:, np.newaxis], len(CHANNELS), axis=1)
+        cared = claim.cared({"rgb": pixel_bits(greys)}).all(axis=1)
+        if not cared.any():
+            raise InputError(
+                "the care imagery has no grey pixel",
+                value="--format mono",
+                hint="give grey imagery with --care",
+            )
+        return greys[cared]
+    assert claim.stimulus is not None
+    return np.asarray(bits_to_pixels(claim.stimulus()["rgb"])[:, 0])

@@ -25,7 +25,7 @@ from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style, VideoFormat
 from wnn2hdl.ir.models import load_model
-from wnn2hdl.ir.video import MAX_WIDTH, ORDERS, Answer
+from wnn2hdl.ir.video import FORMATS, MAX_WIDTH, PIXELS_PER_CLOCK, Answer
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.schedule import MAX_STAGES
 
@@ -40,7 +40,8 @@ SECTIONS = {
         "--stages",
         "--clock",
         "--max-width",
-        "--channels",
+        "--pixels-per-clock",
+        "--format",
         "--answer",
         "--style",
         "--effort",
@@ -63,12 +64,12 @@ SECTIONS = {
 )
 @click.option(
     "--name",
-    help="Begin module names with this.  [default: the folder's name]",
+    help="Begin module names so.  [default: the folder's name]",
 )
 @click.option(
     "--input",
     metavar="FORMAT",
-    help="Read features as words, as in Q3.12.  [default: the model's]",
+    help="Read words, as in Q3.12.  [default: the model's]",
 )
 @click.option(
     "--mode",
@@ -85,7 +86,7 @@ SECTIONS = {
     metavar="N",
     default=1,
     show_default=True,
-    help="Care for codes that occur this often.",
+    help="Care for codes so frequent.",
 )
 @click.option(
     "--edges",
@@ -145,12 +146,20 @@ SECTIONS = {
     help="Take video of N columns.",
 )
 @click.option(
-    "--channels",
-    type=click.Choice(ORDERS),
-    metavar="ORDER",
-    default=VideoFormat.channels,
+    "--pixels-per-clock",
+    type=click.Choice(PIXELS_PER_CLOCK),
+    metavar="N",
+    default=VideoFormat.pixels_per_clock,
     show_default=True,
-    help="Take video so, low byte first.",
+    help="Take 1, 2 or 4 pixels of video at once.",
+)
+@click.option(
+    "--format",
+    type=click.Choice(FORMATS),
+    metavar="ORDER",
+    default=VideoFormat.format,
+    show_default=True,
+    help="Take video so, low byte first; or mono.",
 )
 @click.option(
     "--answer",

@@ -2,26 +2,26 @@
 
 from collections.abc import Sequence
 
-from wnn2hdl.ir import PIXEL_BITS
-from wnn2hdl.ir.video import ANSWER_BITS, Beats
+from wnn2hdl.ir.video import ANSWER_BITS, Beats, VideoFormat
 
 _PATIENCE = 1 << 14
 """Cycles without a beat that show a core that is stuck: longer than two lines take."""
 
 
-def stream_vectors(beats: Beats) -> str:
+def stream_vectors(beats: Beats, video: VideoFormat) -> str:
     """Beats in the format of ``$readmemh``, a line each.
 
-    In the order of the bits from the highest: TUSER and TLAST, which are the same on both sides, the answer,
-    the pixel.
+    In the order of the bits from the highest: TUSER and TLAST, which are the same on both sides, the answers,
+    the pixels; of both those on the right first.
     """
-    words = beats.pixels.astype(int) | beats.answers.astype(int) << PIXEL_BITS
-    marks = beats.starts.astype(int) << 1 | beats.ends
-    return "".join(f"{mark:x}{word:08x}\n" for mark, word in zip(marks, words, strict=True))
+    marks = (beats.starts.astype(int) << 1 | beats.ends).tolist()
+    answer, pixel = (bits * video.pixels_per_clock // 4 for bits in (ANSWER_BITS, video.pixel_bits))
+    words = zip(marks, beats.expected(), beats.sent(video.pixel_bits), strict=True)
+    return "".join(f"{mark:x}{answers:0{answer}x}{pixels:0{pixel}x}\n" for mark, answers, pixels in words)
 
 
 def stream_testbench(
-    *, name: str, count: int, height: int | None, vectors_file: str, sources: Sequence[str]
+    *, name: str, video: VideoFormat, count: int, height: int, vectors_file: str, sources: Sequence[str]
 ) -> str:
     """A self-checking testbench ``NAME_tb`` for a video core ``NAME``.
 
@@ -30,14 +30,16 @@ def stream_testbench(
 
     Args:
         name: the module of the core.
+        video: its streams.
         count: how many beats the file holds.
-        height: lines of the highest frame; None for a core that is not told.
+        height: lines of the highest frame.
         vectors_file: name of the file with the `stream_vectors`, without a folder.
         sources: names of the Verilog files of the core, for the comment that says how to run it.
     """
     files = " ".join([*sources, f"{name}_tb.v"])
-    told = "" if height is None else f"        .height(12'd{height % 4096}),\n"
-    word = PIXEL_BITS + ANSWER_BITS + 2
+    told = f"        .height(12'd{height % 4096}),\n" if video.has_edges else ""
+    pixels, answers = (bits * video.pixels_per_clock for bits in (video.pixel_bits, ANSWER_BITS))
+    word = pixels + answers + 2
     streams = ",\n".join(
         f"        .{side}_axis_video_{signal}({side}_{signal})"
         for side in "sm"
@@ -58,11 +60,11 @@ module {name}_tb;
     reg m_tready = 1'b0;
     reg taken, given;
     integer sent, received, idle;
-    wire [{PIXEL_BITS - 1}:0] s_tdata = sending[{PIXEL_BITS - 1}:0];
+    wire [{pixels - 1}:0] s_tdata = sending[{pixels - 1}:0];
     wire s_tuser = sending[{word - 1}];
     wire s_tlast = sending[{word - 2}];
     wire s_tready;
-    wire [{ANSWER_BITS - 1}:0] m_tdata;
+    wire [{answers - 1}:0] m_tdata;
     wire m_tvalid, m_tuser, m_tlast;
 
     {name} dut (
@@ -95,11 +97,11 @@ module {name}_tb;
             given = m_tvalid && m_tready;
             // A beat with unknown bits was not read: the file is missing or too short.
             if ((given && (^expected === 1'bx
-                || {{m_tuser, m_tlast, m_tdata}} !== expected[{word - 1}:{PIXEL_BITS}]))
+                || {{m_tuser, m_tlast, m_tdata}} !== expected[{word - 1}:{pixels}]))
                 || (^{{s_tready, m_tvalid}} === 1'bx)) begin
                 $display("FAIL: {name}, beat %0d of {count}", received);
                 $display("  tuser, tlast, tdata = %h, expected %h",
-                    {{m_tuser, m_tlast, m_tdata}}, expected[{word - 1}:{PIXEL_BITS}]);
+                    {{m_tuser, m_tlast, m_tdata}}, expected[{word - 1}:{pixels}]);
                 $stop;
                 $finish;
             end

@@ -8,7 +8,7 @@ from typing import Any, Literal, Self, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir.pixel_bits import CHANNEL_BITS, CHANNELS
+from wnn2hdl.ir.pixel_bits import CHANNEL_BITS, CHANNELS, PIXEL_BITS
 
 Answer = Literal["class", "edge", "both"]
 """What is sent of each pixel: its class, whether it is an edge, or both."""
@@ -16,14 +16,23 @@ Answer = Literal["class", "edge", "both"]
 ANSWER_BITS = 8
 """Bits of an answer: the class in the low ones, the edge in the highest; an edge alone in all of them."""
 
-ORDERS = tuple("".join(order) for order in permutations(CHANNELS))
-"""The orders that the channels of a pixel can have."""
+MONO = "mono"
+"""The format of grey pixels, of 8 bits: the model sees them in all three channels."""
+
+FORMATS = (*("".join(order) for order in permutations(CHANNELS)), MONO)
+"""What a pixel of a stream can be: channels from the least significant byte, or grey."""
 
 MAX_WIDTH = 4096
 """The longest line that a core can be made for, in pixels."""
 
 MAX_HEIGHT = 4096
 """The most lines of a frame."""
+
+PIXELS_PER_CLOCK = (1, 2, 4)
+"""How many pixels a beat can have."""
+
+MAX_CLOCK = 300.0
+"""Megahertz for which the registers around the circuits of a core are made: 4K60 at two pixels takes 297."""
 
 MAX_CLASSES = 1 << ANSWER_BITS - 1
 """Classes that an answer has room for."""
@@ -35,31 +44,60 @@ class VideoFormat:
 
     Attributes:
         max_width: pixels of the longest line, 2 to `MAX_WIDTH`.
-        channels: of a pixel, from the least significant byte; AXI4-Stream Video (AMD UG934) has ``GBR``.
+        format: of a pixel, one of `FORMATS`; AXI4-Stream Video (AMD UG934) has ``GBR``.
         answer: what is sent of each pixel.
+        pixels_per_clock: pixels of a beat, one of `PIXELS_PER_CLOCK`; the left one is the least significant.
     """
 
     max_width: int = 1920
-    channels: str = "GBR"
+    format: str = "GBR"
     answer: Answer = "both"
+    pixels_per_clock: int = 1
 
     def __post_init__(self) -> None:
         if not 2 <= self.max_width <= MAX_WIDTH:
             raise ValueError(f"the longest line has 2 to {MAX_WIDTH} pixels, not {self.max_width}")
-        if self.channels not in ORDERS:
-            raise ValueError(f"a pixel has the channels {''.join(CHANNELS)}, not {self.channels}")
+        if self.format not in FORMATS:
+            raise ValueError(f"a pixel is one of {FORMATS}, not {self.format!r}")
         if self.answer not in get_args(Answer):
             raise ValueError(f"a video core answers one of {get_args(Answer)}, not {self.answer!r}")
+        if self.pixels_per_clock not in PIXELS_PER_CLOCK:
+            raise ValueError(f"a beat has one of {PIXELS_PER_CLOCK} pixels, not {self.pixels_per_clock}")
 
     @property
     def has_edges(self) -> bool:
         """Whether edges are sent."""
         return self.answer != "class"
 
+    @property
+    def pixel_bits(self) -> int:
+        """Bits of a pixel in the stream."""
+        return CHANNEL_BITS if self.is_mono else PIXEL_BITS
+
+    @property
+    def is_mono(self) -> bool:
+        """Whether pixels are grey."""
+        return self.format == MONO
+
+    def beats_of(self, pixels: int) -> int:
+        """How many beats so many pixels take."""
+        return -(-pixels // self.pixels_per_clock)
+
+    def padded(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """A picture, uint8 ``[height, width, ...]``, whose last column is repeated up to whole beats."""
+        missing = -picture.shape[1] % self.pixels_per_clock
+        return np.concatenate([picture, *[picture[:, -1:]] * missing], axis=1)
+
     def pixels(self, pictures: NDArray[np.uint8]) -> NDArray[np.uint32]:
-        """The words of pixels, uint32 ``S``; the pixels are uint8 ``S + (3,)`` in the order of `CHANNELS`."""
+        """The words of pixels, uint32 ``S``.
+
+        Args:
+            pictures: uint8 ``S + (3,)``, in the order of `CHANNELS`; grey if the pixels are.
+        """
+        if self.is_mono:
+            return pictures[..., 0].astype(np.uint32)
         places = CHANNEL_BITS * np.arange(len(CHANNELS), dtype=np.uint32)
-        channels = pictures[..., [CHANNELS.index(channel) for channel in self.channels]]
+        channels = pictures[..., [CHANNELS.index(channel) for channel in self.format]]
         return np.asarray((channels.astype(np.uint32) << places).sum(axis=-1, dtype=np.uint32))
 
     def answers(self, classes: NDArray[np.uint8], edges: NDArray[np.bool_] | None) -> NDArray[np.uint8]:
@@ -87,11 +125,11 @@ class VideoFormat:
 
 @dataclass(frozen=True, eq=False)
 class Beats:
-    """What goes into a video core and what has to come out, frame after frame, pixel by pixel.
+    """What goes into a video core and what has to come out, frame after frame, beat by beat.
 
     Attributes:
-        pixels: the words that go in, uint32 ``[beats]``.
-        answers: the words that come out, uint8 ``[beats]``.
+        pixels: the words of the pixels that go in, uint32 ``[beats, pixels per clock]``.
+        answers: the words that come out, uint8 of the same shape.
         starts: which are the first of a frame, bool ``[beats]``.
         ends: which are the last of a line, bool ``[beats]``.
         height: lines of the highest frame.
@@ -106,20 +144,38 @@ class Beats:
     def __len__(self) -> int:
         return len(self.pixels)
 
+    def sent(self, pixel_bits: int) -> list[int]:
+        """TDATA of each beat that goes in, whose pixels have so many bits."""
+        return _joined(self.pixels, pixel_bits)
+
+    def expected(self) -> list[int]:
+        """TDATA of each beat that comes out."""
+        return _joined(self.answers, ANSWER_BITS)
+
     @classmethod
-    def of(cls, pixels: Sequence[NDArray[np.uint32]], answers: Sequence[NDArray[np.uint8]]) -> Self:
-        """The beats of frames, whose words are ``[height, width]`` each."""
+    def of(
+        cls,
+        pixels: Sequence[NDArray[np.uint32]],
+        answers: Sequence[NDArray[np.uint8]],
+        pixels_per_clock: int = 1,
+    ) -> Self:
+        """The beats of frames of whole beats, whose words are ``[height, width]`` each."""
         starts, ends = [], []
         for frame in pixels:
-            start, end = np.zeros((2, *frame.shape), dtype=np.bool_)
+            start, end = np.zeros((2, len(frame), frame.shape[1] // pixels_per_clock), dtype=np.bool_)
             start[0, 0] = True
             end[:, -1] = True
-            starts.append(start)
-            ends.append(end)
+            starts.append(start.ravel())
+            ends.append(end.ravel())
         return cls(
-            np.concatenate([frame.ravel() for frame in pixels]),
-            np.concatenate([frame.ravel() for frame in answers]),
-            np.concatenate([frame.ravel() for frame in starts]),
-            np.concatenate([frame.ravel() for frame in ends]),
+            np.concatenate([frame.reshape(-1, pixels_per_clock) for frame in pixels]),
+            np.concatenate([frame.reshape(-1, pixels_per_clock) for frame in answers]),
+            np.concatenate(starts),
+            np.concatenate(ends),
             max(len(frame) for frame in pixels),
         )
+
+
+def _joined(words: NDArray[np.uint32] | NDArray[np.uint8], bits: int) -> list[int]:
+    """The words of each row side by side, the first the least significant."""
+    return [sum(word << place * bits for place, word in enumerate(row)) for row in words.tolist()]

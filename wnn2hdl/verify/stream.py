@@ -11,10 +11,11 @@ from typing import Any
 
 from amaranth.sim import Simulator
 
-from hdl_templates.video import HEIGHT_BITS, VideoCore
+from hdl_templates.scan import HEIGHT_BITS
+from hdl_templates.video import VideoCore
 from wnn2hdl.emit.stream_testbench import stream_testbench, stream_vectors
 from wnn2hdl.errors import CheckError, ToolError
-from wnn2hdl.ir.video import Beats
+from wnn2hdl.ir.video import Beats, VideoFormat
 from wnn2hdl.verify.compiled import RUN, CompiledSimulator
 from wnn2hdl.verify.simulation import Progress, SimulationResult, recorded
 
@@ -55,21 +56,21 @@ def simulate_stream(
 
 def run_stream(
     beats: Beats,
+    video: VideoFormat,
     module: str,
     sources: Sequence[Path],
     simulator: CompiledSimulator,
     *,
-    told: bool,
     timeout: float = 600.0,
 ) -> float:
     """Send frames through emitted Verilog, as `simulate_stream` does, in a compiled simulator.
 
     Args:
         beats: the frames.
+        video: the core's streams.
         module: the core's module.
         sources: its Verilog files.
         simulator: who simulates.
-        told: whether the core has the input ``height``.
         timeout: seconds for compiling and for running, each.
 
     Returns:
@@ -81,12 +82,13 @@ def run_stream(
     """
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
-        (folder / "beats.hex").write_text(stream_vectors(beats), encoding="utf-8")
+        (folder / "beats.hex").write_text(stream_vectors(beats, video), encoding="utf-8")
         bench = folder / f"{module}_tb.v"
         text = stream_testbench(
             name=module,
+            video=video,
             count=len(beats),
-            height=beats.height if told else None,
+            height=beats.height,
             vectors_file="beats.hex",
             sources=[source.name for source in sources],
         )
@@ -102,12 +104,13 @@ def run_stream(
 
 def _bench(core: VideoCore, beats: Beats, progress: Progress | None) -> Any:
     draw = random.Random(_SEED)  # noqa: S311  # pauses, no secrets
-    sent = list(zip(beats.pixels.tolist(), beats.starts.tolist(), beats.ends.tolist(), strict=True))
-    wanted = list(zip(beats.answers.tolist(), beats.starts.tolist(), beats.ends.tolist(), strict=True))
+    marks = beats.starts.tolist(), beats.ends.tolist()
+    sent = list(zip(beats.sent(core.video.pixel_bits), *marks, strict=True))
+    wanted = list(zip(beats.expected(), *marks, strict=True))
 
     async def bench(ctx: Any) -> None:
         ctx.set(core.aresetn, 0)
-        if core.window is not None:
+        if core.windows:
             ctx.set(core.height, beats.height % (1 << HEIGHT_BITS))
         await ctx.tick()
         ctx.set(core.aresetn, 1)

@@ -14,7 +14,7 @@ from wnn2hdl.elaborate import video_core
 from wnn2hdl.emit import stream_testbench, stream_vectors
 from wnn2hdl.errors import CheckError, InputError, ToolError
 from wnn2hdl.images import read_rgb, write_png
-from wnn2hdl.ir import WisardModel, window_codes
+from wnn2hdl.ir import VideoFormat, WisardModel, window_codes
 from wnn2hdl.ir.video import Beats
 from wnn2hdl.tools import run_icarus
 from wnn2hdl.verify.stream import run_stream, simulate_stream
@@ -59,7 +59,7 @@ def test_the_testbench_passes_and_finds_a_border_of_zeros(video: Path, tmp_path:
     top = files.testbench.stem
     assert "PASS" in run_icarus(sources, top, cwd=tmp_path, timeout=60).output
     text = files.verilog.read_text()
-    wrong = text.replace("if (line_starts) right <= newest", "if (line_starts) right <= 3'h0")
+    wrong = text.replace("if (newest_last) right <= newest_0", "if (newest_last) right <= 3'h0")
     assert wrong != text
     (tmp_path / "wrong.v").write_text(wrong)
     with pytest.raises(ToolError) as failed:
@@ -104,10 +104,11 @@ def test_a_picture_wider_than_the_lines_is_refused(video: Path, tmp_path: Path) 
 @pytest.mark.simulator
 def test_a_wrong_answer_is_found_in_icarus(video: Path) -> None:
     design, files, _ = open_build(video)
+    assert design.video is not None
     beats = sample_frames(design)
     wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
     with pytest.raises(CheckError, match="icarus disagrees"):
-        run_stream(wrong, design.module("video"), files.simulated, "icarus", told=True)
+        run_stream(wrong, design.video, design.module("video"), files.simulated, "icarus")
 
 
 def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
@@ -116,10 +117,10 @@ def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
     beats = sample_frames(design)
     wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
     with pytest.raises(CheckError, match="at beat 0"):
-        simulate_stream(video_core(design.circuit, design.video, style=design.style), wrong)
+        simulate_stream(video_core(design.top, design.video, style=design.style), wrong)
     endless = Beats(beats.pixels, beats.answers, beats.starts, beats.ends, beats.height + 1)
     with pytest.raises(CheckError, match="stops after"):
-        simulate_stream(video_core(design.circuit, design.video, style=design.style), endless)
+        simulate_stream(video_core(design.top, design.video, style=design.style), endless)
 
 
 def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
@@ -134,7 +135,59 @@ def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
 def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
     frame = np.array([[0xABCDEF, 1]], dtype=np.uint32)
     beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)])
-    assert stream_vectors(beats) == "280abcdef\n101000001\n"
-    text = stream_testbench(name="x", count=2, height=None, vectors_file="x.hex", sources=["x.v"])
+    video = VideoFormat(answer="class")
+    assert stream_vectors(beats, video) == "280abcdef\n101000001\n"
+    text = stream_testbench(name="x", video=video, count=2, height=1, vectors_file="x.hex", sources=["x.v"])
     assert "reg [33:0] vectors [0:1];" in text
     assert "height" not in text
+    video = VideoFormat(answer="class", pixels_per_clock=2, format="mono")
+    frame = np.array([[0xAB, 1]], dtype=np.uint32)
+    beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)], 2)
+    assert stream_vectors(beats, video) == "3018001ab\n"
+
+
+@pytest.mark.simulator
+def test_two_pixels_per_clock_with_registers_are_as_one(
+    model: WisardModel, imagery: Path, tmp_path: Path
+) -> None:
+    options = CompileOptions(target="video", max_width=40, pixels_per_clock=2, stages=2)
+    build = compile_model(model, tmp_path / "fast", options, silent)
+    assert build.failure is None
+    assert build.report["latency"] >= 2
+    assert "Registers in its circuits" in (tmp_path / "fast" / "fast.v").read_text()
+    picture = tmp_path / "odd.png"
+    write_png(picture, read_rgb(imagery / "7.png")[:5, :39])
+    result = play(tmp_path / "fast", picture, "icarus", silent)
+    assert result.frame is not None
+    assert result.frame.shape == (5, 39)
+    classes, edges = framed_answers(open_build(tmp_path / "fast")[0], read_rgb(picture))
+    assert edges is not None
+    assert np.array_equal(result.frame, classes | edges.astype(np.uint8) << 7)
+
+
+@pytest.mark.simulator
+def test_grey_pixels_are_three_equal_channels_and_colours_are_refused(
+    model: WisardModel, imagery: Path, tmp_path: Path
+) -> None:
+    options = CompileOptions(target="video", max_width=64, format="mono", pixels_per_clock=4)
+    assert compile_model(model, tmp_path / "grey", options, silent).failure is None
+    picture = imagery / "7.png"
+    with pytest.raises(InputError, match="takes grey pixels"):
+        play(tmp_path / "grey", picture, "icarus", silent)
+    grey = np.repeat(read_rgb(picture)[:7, :, :1], 3, axis=2)
+    write_png(tmp_path / "grey.png", grey)
+    result = play(tmp_path / "grey", tmp_path / "grey.png", "icarus", silent)
+    assert np.array_equal(result.foreground, PixelClassifier(model).classify(grey) != 0)
+
+
+def test_grey_pixels_need_grey_imagery_for_a_care_set(model: WisardModel, tmp_path: Path) -> None:
+    write_png(tmp_path / "red.png", np.full((4, 4, 3), [[[255, 0, 0]]], dtype=np.uint8))
+    options = CompileOptions(target="video", mode="domain", care=tmp_path, format="mono")
+    design = plan(model, "mine", options, silent).design
+    with pytest.raises(InputError, match="no grey pixel"):
+        sample_frames(design)
+
+
+def test_a_clock_beyond_that_of_the_core_is_refused(model: WisardModel) -> None:
+    with pytest.raises(InputError, match="not made for this clock: 301 MHz"):
+        plan(model, "mine", CompileOptions(target="video", clock=301), silent)

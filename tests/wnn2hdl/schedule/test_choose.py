@@ -1,5 +1,7 @@
 """Pipelines by the number of their stages and by the clock."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -7,8 +9,10 @@ from hypothesis import strategies as st
 from tests.random_circuits import circuits
 from tests.wnn2hdl.schedule.conftest import chain
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.schedule import XC7, for_clock, for_stages
+from wnn2hdl.ir.circuit import Circuit, Instance
+from wnn2hdl.ir.wires import Slice, Word
+from wnn2hdl.schedule import XC7, for_clock, for_instances, for_stages, pipelined
+from wnn2hdl.schedule.stages import Stages
 
 COMBINATIONAL = ("table", "threshold", "sum", "match", "argmax", "instance")
 LEVEL = XC7.net + XC7.lut
@@ -51,3 +55,32 @@ def test_the_clock_that_some_stages_allow_is_met_by_no_more(circuit: Circuit, st
     found = for_clock(circuit, 1e6 / period - 1e-3)
     assert found.latencies[circuit.name] <= stages
     assert found.period <= period
+
+
+def side_by_side(*circuits: Circuit) -> Circuit:
+    """Instances with ports of their own."""
+    nodes, inputs = [], []
+    drivers: dict[str, Word] = {}
+    for number, circuit in enumerate(circuits):
+        ports = [replace(port, name=f"{port.name}_{number}") for port in circuit.inputs]
+        words = {port.name: outer.word for port, outer in zip(circuit.inputs, ports, strict=True)}
+        node = Instance(f"part_{number}", replace(circuit, name=f"chain_{number}"), words)
+        nodes.append(node)
+        inputs += ports
+        drivers |= {f"out_{number}": tuple(Slice(net, 0, width) for net, width in node.drives.items())}
+    return Circuit("all", "Chains.", tuple(inputs), tuple(nodes), drivers)
+
+
+def latencies(circuit: Circuit, stages: Stages | None) -> list[int]:
+    assert stages is not None
+    return [node.latency for node in pipelined(circuit, stages).nodes]
+
+
+def test_circuits_side_by_side_get_registers_of_their_own_where_they_need_any() -> None:
+    circuit = side_by_side(chain(7), chain(2))
+    # What has no registers needs room for one LUT more.
+    assert latencies(circuit, for_instances(circuit, megahertz=1e6 / (XC7.register + 3 * LEVEL))) == [3, 0]
+    assert latencies(circuit, for_instances(circuit, megahertz=1e6 / (XC7.register + 2 * LEVEL))) == [4, 1]
+    assert latencies(circuit, for_instances(circuit, stages=2)) == [2, 0]
+    assert for_instances(circuit, megahertz=10) is None
+    assert for_instances(circuit) is None
