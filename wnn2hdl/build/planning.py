@@ -26,7 +26,7 @@ from wnn2hdl.ir import (
 from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.features import FixedPoint, Thermometer
-from wnn2hdl.ir.models import AnyModel, LogicModel, TableSumModel
+from wnn2hdl.ir.models import AnyModel, LogicModel
 from wnn2hdl.ir.video import MAX_CLOCK, Answer
 from wnn2hdl.lower.table import care_set
 from wnn2hdl.lower.targets import Ingredients, Target, target_for
@@ -163,10 +163,6 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
             the clock.
         CheckError: a minimised table differs from the model.
     """
-    if isinstance(model, TableSumModel) and options.pipelined:
-        raise InputError(
-            "sums of tables cannot be pipelined yet", value=model.kind, hint="leave --stages and --clock out"
-        )
     if options.stages is not None and options.clock is not None:
         raise InputError(
             "the number of stages and the clock decide the same",

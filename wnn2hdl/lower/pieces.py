@@ -46,7 +46,7 @@ def divided(circuit: Circuit, carried: Mapping[int, Slice | bool]) -> Circuit:
         f"response_{number}": (Slice(f"{word[0].net}.total", 0, widths[f"{word[0].net}.total"]),)
         for number, word in enumerate(largest.words)
     }
-    nodes.append(Instance(WINNER, _winner(largest), words))
+    nodes.append(Instance(WINNER, winner(largest), words))
     ((output, word),) = circuit.drivers.items()
     drivers = {output: (Slice(f"{WINNER}.class_bits", 0, width_of(word)),)}
     return Circuit(circuit.name, circuit.summary, circuit.inputs, tuple(nodes), drivers)
@@ -64,7 +64,8 @@ def _sum(node: Sum, number: int) -> Circuit:
     return Circuit(f"sum_{number}", f"{summary}.", (bits,), (added,), {"total": total})
 
 
-def _winner(node: ArgMax) -> Circuit:
+def winner(node: ArgMax) -> Circuit:
+    """The circuit ``winner``: ``response_0`` and so on, as wide as the words of a node, to ``class_bits``."""
     ports = tuple(Port(f"response_{number}", width_of(word)) for number, word in enumerate(node.words))
     largest = ArgMax("largest", tuple(port.word for port in ports), node.tie)
     index = (Slice("largest", 0, largest.drives["largest"]),)

@@ -1,7 +1,8 @@
 """Layers of sums of tables: what a node's edges add is parted into weighted bits, and one sum adds these.
 
 Each layer is two circuits. The first adds; its totals are those of `wnn2hdl.ir.models.sums.Total`. The second
-saturates them to the words that the next layer reads.
+saturates them to the words that the next layer reads. The winner is a circuit, too; what is between these is
+wiring.
 """
 
 from collections import Counter
@@ -18,6 +19,7 @@ from wnn2hdl.ir.models.sums import Total
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table, Threshold
 from wnn2hdl.ir.wires import Port, Slice, Word
 from wnn2hdl.lower.addends import addends
+from wnn2hdl.lower.pieces import WINNER, winner
 from wnn2hdl.minimise.support import members, minimum_supports, restrict
 
 NETWORK = "network"
@@ -38,11 +40,13 @@ def network(model: TableSumModel) -> Circuit:
         ((net, width),) = saturates.drives.items()
         word = (Slice(net, 0, width),)
     size = model.layers[-1].output_bits
-    words = tuple((Slice(word[0].net, place * size, size),) for place in range(len(model.classes)))
-    winner = ArgMax("winner", words, model.ties)
+    words = (Slice(word[0].net, place * size, size) for place in range(len(model.classes)))
+    responses = {f"response_{number}": (word,) for number, word in enumerate(words)}
+    decides = Instance(WINNER, winner(ArgMax("largest", tuple(responses.values()), model.ties)), responses)
     summary = f"Network of {len(model.classes)} classes."
-    drivers = {"class_bits": (Slice(winner.name, 0, winner.drives[winner.name]),)}
-    return Circuit(NETWORK, summary, (features,), (*nodes, winner), drivers)
+    ((net, width),) = decides.drives.items()
+    drivers = {"class_bits": (Slice(net, 0, width),)}
+    return Circuit(NETWORK, summary, (features,), (*nodes, decides), drivers)
 
 
 def _adding(model: TableSumModel, number: int) -> Circuit:

@@ -19,23 +19,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from wnn2hdl.verify.addition import Sums
 from wnn2hdl.verify.equivalence import CLOCK, Circuit, one_clock, structure
 
 _SECONDS = 600.0
 _FRAME = "proof__frame"
-
-
-@dataclass(frozen=True)
-class Addition:
-    """What a piece that adds bits by counters is claimed to be: ``total`` of ``bits``.
-
-    Attributes:
-        weights: of each bit.
-        offset: is added.
-    """
-
-    weights: tuple[int, ...]
-    offset: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,21 +32,21 @@ class Piece:
 
     Attributes:
         statement: the claim in words.
-        module: of the reference.
+        module: of the reference; None of a sum that is beyond SAT.
         inputs: width of each input port of the comparison.
         outputs: width of each output port.
         lines: statements of a frame around the circuit, where it is not compared port by port.
         connections: in the frame, what each port of the circuit is connected to.
-        addition: the sum that it is, if it is one.
+        sums: what it adds, if that is what it does; it is then proved by substitution.
     """
 
     statement: str
-    module: str
+    module: str | None
     inputs: Mapping[str, int]
     outputs: Mapping[str, int]
     lines: tuple[str, ...] = ()
     connections: Mapping[str, str] = field(default_factory=dict)
-    addition: Addition | None = None
+    sums: Sums | None = None
 
     def framed(self, circuit: Circuit, reference: str) -> Circuit:
         """A circuit with the ports of the comparison."""

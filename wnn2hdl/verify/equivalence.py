@@ -258,7 +258,7 @@ def read(circuit: Circuit, number: int, folder: Path) -> list[str]:
         number: keeps the files of several circuits apart.
         folder: where Yosys will run.
     """
-    script = ["design -reset", *(f"design -copy-from cells {cell}" for cell in sorted(_cells(circuit)))]
+    script = ["design -reset", *(f"design -copy-from cells ={cell}" for cell in sorted(_cells(circuit)))]
     for position, text in enumerate(circuit.sources):
         name = f"{number}_{position}.v"
         (folder / name).write_text(text, encoding="utf-8")

@@ -29,7 +29,8 @@ from wnn2hdl.ir.circuit import Circuit, Instance
 from wnn2hdl.ir.encoder import Encoder
 from wnn2hdl.ir.models import VotingModel
 from wnn2hdl.ir.wires import Slice
-from wnn2hdl.verify.composition import Addition, Box, Composition, Piece, bits
+from wnn2hdl.verify.addition import Sums
+from wnn2hdl.verify.composition import Box, Composition, Piece, bits
 from wnn2hdl.verify.network_lines import encoder_lines, features_width, owners_of, positions_read, table_lines
 from wnn2hdl.verify.reference import class_bits, module, weighted_sum, winning
 
@@ -65,15 +66,16 @@ class Pieces:
             "decide.tables": Box("tables", {"bits": bits("encode.bits", len(read))}),
         }
         responses: dict[str, tuple[str, ...]] = {}
+        added: dict[str, tuple[tuple[int, ...], int]] = {}
         for owner in range(len(model.classes)):
             name = f"votes_{owner}"
             if name not in self._sums:
                 raise ValueError(f"there is no {name}")
             part = self._sums[name]
-            places, addition = self._votes(owner)
+            places, weights, offset = self._votes(owner)
             if part not in pieces:
-                pieces[part] = self._sum(part, addition)
-            elif pieces[part].addition != addition:
+                pieces[part] = self._sum(part, weights, offset)
+            if added.setdefault(part, (weights, offset)) != (weights, offset):
                 raise ValueError(f"{name} is not the sum {part}")
             boxes[f"decide.{name}"] = Box(part, {"bits": tuple(f"decide.tables.votes[{k}]" for k in places)})
             responses[f"response_{owner}"] = bits(f"decide.{name}.total", pieces[part].outputs["total"])
@@ -121,8 +123,8 @@ class Pieces:
         statement = "what stands for a table of the model equals it, for all bits that the encoder can give"
         return self._piece(statement, "tables", inputs, outputs, lines, frame, connections)
 
-    def _votes(self, owner: int) -> tuple[list[int], Addition]:
-        """Which votes a class adds, and with which weights: those of the model's tables that vote for it."""
+    def _votes(self, owner: int) -> tuple[list[int], tuple[int, ...], int]:
+        """Which votes a class adds, with which weights, and what is added to that, by the model's tables."""
         weights: Counter[int] = Counter()
         offset = 0
         for table, voted in enumerate(owners_of(self._model)):
@@ -134,15 +136,15 @@ class Pieces:
                     weights[bit.low] += 1
         if not weights:
             raise ValueError(f"all tables that vote for class {owner} are constant")
-        return list(weights), Addition(tuple(weights.values()), offset)
+        return list(weights), tuple(weights.values()), offset
 
-    def _sum(self, part: str, addition: Addition) -> Piece:
-        count, highest = len(addition.weights), sum(addition.weights) + addition.offset
-        outputs = {"total": highest.bit_length()}
-        added = weighted_sum([f"bits[{place}]" for place in range(count)], addition.weights, addition.offset)
+    def _sum(self, part: str, weights: tuple[int, ...], offset: int) -> Piece:
+        outputs = {"total": (sum(weights) + offset).bit_length()}
+        added = weighted_sum([f"bits[{place}]" for place in range(len(weights))], weights, offset)
         lines = [f"  assign total = {added};"]
-        statement = f"the sum of {count} bits by their weights, for all bits"
-        return self._piece(statement, part, {"bits": count}, outputs, lines, addition=addition)
+        statement = f"the sum of {len(weights)} bits by their weights, for all bits"
+        sums = Sums.of_bits(weights, offset)
+        return self._piece(statement, part, {"bits": len(weights)}, outputs, lines, sums=sums)
 
     def _winner(self, inputs: dict[str, int]) -> Piece:
         lines = winning(len(inputs), max(inputs.values()), ties=self._model.ties)
@@ -159,11 +161,11 @@ class Pieces:
         lines: list[str],
         frame: tuple[str, ...] = (),
         connections: dict[str, str] | None = None,
-        addition: Addition | None = None,
+        sums: Sums | None = None,
     ) -> Piece:
         name = f"proof__{part}"
         self._modules.append(module(name, inputs, outputs, lines))
-        return Piece(statement, name, inputs, outputs, frame, connections or {}, addition)
+        return Piece(statement, name, inputs, outputs, frame, connections or {}, sums)
 
 
 def _ranks(encoder: Encoder, read: Container[int]) -> tuple[int, list[str]]:

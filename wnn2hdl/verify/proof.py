@@ -18,18 +18,16 @@ the outputs are equal for the cared-for ones.
 A pipeline is in the wrapper with its registers, and is equal to the reference its latency later
 (`wnn2hdl.verify.equivalence`); a mask that reads an input passes as many registers as the pipeline has.
 
-Sums of many words are proved another way (`wnn2hdl.verify.addition`). A circuit whose pieces have claims of
-their own is proved with the references of the pieces in their place: it is right if it is right with these.
-
 The care set is not empty (`wnn2hdl.verify.specification.flags_of` refuses that), so no claim holds vacuously.
 
-A network is proved piece by piece (`wnn2hdl.verify.composition` says why that is sound). Where a piece is not
-what is claimed of it, the network may still be the model: it is then compared as a whole.
+A network is proved piece by piece (`wnn2hdl.verify.composition` says why that is sound), its sums by
+substitution (`wnn2hdl.verify.addition`). Where a piece is not what is claimed of it, the network may still be
+the model: it is then compared as a whole.
 """
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Literal
 
@@ -38,9 +36,8 @@ import numpy as np
 from wnn2hdl.errors import ToolError
 from wnn2hdl.ir import PIXEL_BITS
 from wnn2hdl.ir.wires import word_values
-from wnn2hdl.verify.addition import Sums, answers, is_sum_of_tables
-from wnn2hdl.verify.composition import Composition, wrong_wire
-from wnn2hdl.verify.counters import adds_up
+from wnn2hdl.verify.addition import is_sum_of_tables, is_wrong_on_samples
+from wnn2hdl.verify.composition import Composition, Piece, wrong_wire
 from wnn2hdl.verify.equivalence import (
     CLOCK,
     UNDECIDED,
@@ -53,15 +50,14 @@ from wnn2hdl.verify.signals import read_signals
 from wnn2hdl.verify.specification import Claim, Specification, show, value_bits
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
-COUNTERS = "arithmetic over the truth tables of its counters"
+SUBSTITUTION = "substitution of signals by those they read, on all their values"
+SAMPLES = "a vector on which they differ"
 WIRING = "the claims of its pieces and its wiring, bit by bit"
 
 Status = Literal["proved", "refuted", "undecided"]
 
 MODEL = "the Verilog equals the model, on all inputs that are cared for"
 NETLIST = "the mapped netlist equals the Verilog, on all inputs"
-
-SUBSTITUTION = "substitution of signals by those they read, on all their values"
 
 Widths = Mapping[str, int]
 """Width of each port by name, in bits."""
@@ -143,28 +139,20 @@ def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[
 def _prove_whole(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[str, Proof]:
     started = time.perf_counter()
     claims = {part: claim for part, claim in specification.claims.items() if part in emitted}
-    added = {part: claim.sums for part, claim in claims.items() if claim.sums is not None}
-    counterexamples = {part: _of_sums(claims[part], sums, emitted[part]) for part, sums in added.items()}
-    compared = {part: claim for part, claim in claims.items() if part not in added}
-    pairs = [sides(specification, claim, emitted[part]) for part, claim in compared.items()]
-    differences = find_differences(pairs, timeout=_SECONDS) if pairs else []
+    pairs = [sides(specification, claim, emitted[part]) for part, claim in claims.items()]
+    differences = find_differences(pairs, timeout=_SECONDS)
     seconds = time.perf_counter() - started
-    proofs = {
-        part: Proof(MODEL, SUBSTITUTION, seconds, "refuted" if found else "proved", found)
-        for part, found in counterexamples.items()
+    return {
+        part: _proof(MODEL, seconds, values, partial(_against_model, claim, emitted[part]))
+        for (part, claim), values in zip(claims.items(), differences, strict=True)
     }
-    for (part, claim), values in zip(compared.items(), differences, strict=True):
-        circuit = _with_references(specification, claim, emitted[part])
-        proofs[part] = _proof(MODEL, seconds, values, partial(_against_model, claim, circuit))
-    return {part: proofs[part] for part in claims}
 
 
 def method(specification: Specification) -> str:
     """What decides the claims of a specification."""
     if specification.composition is not None:
-        return f"binary decision diagrams and {METHOD}, piece by piece; sums by {COUNTERS}"
-    adds = any(claim.sums is not None for claim in specification.claims.values())
-    return f"{METHOD}; sums by {SUBSTITUTION}" if adds else METHOD
+        return f"binary decision diagrams and {METHOD}, piece by piece; sums by {SUBSTITUTION}"
+    return METHOD
 
 
 def _prove_pieces(
@@ -172,37 +160,66 @@ def _prove_pieces(
 ) -> dict[str, Proof]:
     """The pieces of a circuit, its wiring, and with that the circuit."""
     started = time.perf_counter()
-    pieces, proofs = composition.pieces, dict[str, Proof]()
-    statuses: dict[str, tuple[str, Status]] = {}
-    for part, piece in pieces.items():
-        sum_of = piece.addition
-        if sum_of and adds_up(emitted[part], "bits", sum_of.weights, sum_of.offset, "total"):
-            statuses[part] = (COUNTERS, "proved")
-    rest = [part for part in pieces if part not in statuses]
-    differences = find_differences(
-        [
-            (
-                pieces[part].framed(emitted[part], specification.reference),
-                Circuit((specification.reference,), pieces[part].module),
-            )
-            for part in rest
-        ],
-        timeout=_SECONDS,
-        conflicts=_CONFLICTS,
-        nodes=_NODES,
-    )
-    statuses |= {part: (METHOD, _status(values)) for part, values in zip(rest, differences, strict=True)}
+    pieces = composition.pieces
+    statuses = _prove_sums(pieces, emitted)
+    pairs = {
+        part: (
+            piece.framed(emitted[part], specification.reference),
+            Circuit((specification.reference,), piece.module),
+        )
+        for part, piece in pieces.items()
+        if part not in statuses and piece.module is not None
+    }
+    differences = find_differences(list(pairs.values()), timeout=_SECONDS, conflicts=_CONFLICTS, nodes=_NODES)
+    statuses |= {part: (METHOD, _status(values)) for part, values in zip(pairs, differences, strict=True)}
     whole = emitted[composition.part]
     fault = wrong_wire(composition, whole, emitted)
     seconds = time.perf_counter() - started
-    for part, piece in pieces.items():
-        decided_by, status = statuses[part]
-        proofs[part] = Proof(piece.statement, decided_by, seconds, status)
-    found = {status for _, status in statuses.values()}
+    proofs = {
+        part: Proof(piece.statement, statuses[part][0], seconds, statuses[part][1])
+        for part, piece in pieces.items()
+    }
+    found = {proof.status for proof in proofs.values()}
     if fault is not None or "refuted" in found:
-        return proofs | _prove_whole(specification, {composition.part: whole})
-    status = "undecided" if "undecided" in found else "proved"
+        claim = specification.claims[composition.part]
+        counterexample = _on_samples(claim, whole)
+        if counterexample is None:
+            return proofs | _prove_whole(specification, {composition.part: whole})
+        return proofs | {composition.part: Proof(MODEL, SAMPLES, seconds, "refuted", counterexample)}
+    status: Status = "undecided" if "undecided" in found else "proved"
     return proofs | {composition.part: Proof(MODEL, WIRING, seconds, status)}
+
+
+def _prove_sums(pieces: Mapping[str, Piece], emitted: Mapping[str, Circuit]) -> dict[str, tuple[str, Status]]:
+    """What decided which pieces that add, and how; without those that are left to be compared."""
+    claims = {part: piece.sums for part, piece in pieces.items() if piece.sums is not None}
+    found: dict[str, tuple[str, Status]] = {}
+    modules = read_signals([emitted[part] for part in claims])
+    for (part, sums), signals in zip(claims.items(), modules, strict=True):
+        if signals is not None and is_sum_of_tables(signals, sums, emitted[part].latency):
+            found[part] = SUBSTITUTION, "proved"
+        elif pieces[part].module is None:
+            is_wrong = signals is not None and is_wrong_on_samples(signals, sums)
+            found[part] = (SAMPLES, "refuted") if is_wrong else (SUBSTITUTION, "undecided")
+    return found
+
+
+def _on_samples(claim: Claim, circuit: Circuit) -> Counterexample | None:
+    """A vector of the stimulus of a claim on which a circuit is not the model; None if there is none."""
+    (signals,) = read_signals([circuit])
+    if signals is None or claim.stimulus is None:
+        return None
+    inputs = claim.stimulus()
+    found, expected = signals.answers(inputs), claim.answers(inputs)
+    wrong = np.any([(found[port] != bits).any(axis=1) for port, bits in expected.items()], axis=0)
+    if not wrong.any():
+        return None
+    sample = slice(int(wrong.argmax()), int(wrong.argmax()) + 1)
+    shown = (
+        {port: word_values(bits[sample])[0] for port, bits in values.items()}
+        for values in (inputs, expected, found)
+    )
+    return Counterexample(claim.part, *shown)
 
 
 def _status(difference: Difference) -> Status:
@@ -250,50 +267,7 @@ def prove_netlists(
 def sides(specification: Specification, claim: Claim, circuit: Circuit) -> tuple[Circuit, Circuit]:
     """What `prove` compares: a circuit and the reference of its claim, both held in the care set."""
     reference = Circuit((specification.reference,), claim.module)
-    circuit = _with_references(specification, claim, circuit)
     return held_in_care(specification, claim, circuit), held_in_care(specification, claim, reference)
-
-
-def _with_references(specification: Specification, claim: Claim, circuit: Circuit) -> Circuit:
-    """A circuit in which the references of its pieces stand for them."""
-    if not claim.pieces:
-        return circuit
-    prefix = circuit.top.removesuffix(claim.part)
-    modules = []
-    for piece in (specification.claims[name] for name in claim.pieces):
-        ports = [f"input [{width - 1}:0] {port}" for port, width in piece.inputs.items()]
-        ports += [f"output [{width - 1}:0] {port}" for port, width in piece.outputs.items()]
-        pins = ", ".join(f".{port}({port})" for port in (*piece.inputs, *piece.outputs))
-        modules.append(
-            f"module {prefix}{piece.part}({', '.join(ports)}); {piece.module} reference ({pins}); endmodule\n"
-        )
-    # Of two modules of one name the first counts.
-    return replace(circuit, sources=("".join(modules), specification.reference, *circuit.sources))
-
-
-def _of_sums(claim: Claim, sums: Sums, circuit: Circuit) -> Counterexample | None:
-    """A word that occurs on which a circuit differs from the sums claimed, None if it is proved to be these.
-
-    Raises:
-        ToolError: it is neither proved nor refuted.
-    """
-    signals = read_signals(circuit)
-    if is_sum_of_tables(signals, sums):
-        return None
-    assert claim.stimulus is not None
-    inputs = claim.stimulus()
-    found, expected = answers(signals, inputs), claim.answers(inputs)
-    wrong = np.any([(found[port] != bits).any(axis=1) for port, bits in expected.items()], axis=0)
-    if not wrong.any():
-        raise ToolError("the steps of a proof by substitution do not work out", value=claim.part)
-    sample = slice(int(wrong.argmax()), int(wrong.argmax()) + 1)
-    return Counterexample(
-        claim.part,
-        *(
-            {port: word_values(bits[sample])[0] for port, bits in values.items()}
-            for values in (inputs, expected, found)
-        ),
-    )
 
 
 def held_in_care(specification: Specification, claim: Claim, circuit: Circuit) -> Circuit:

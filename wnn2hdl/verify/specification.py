@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.wires import Bits
-from wnn2hdl.verify.addition import Sums
 from wnn2hdl.verify.composition import Composition
 
 Samples = Mapping[str, Bits]
@@ -58,8 +57,6 @@ class Claim:
         masks: outputs that matter on a part of the cared-for inputs only, and by which module a proof knows
             it.
         matters: for these outputs, from the model's answers, on which samples they do: bool ``[samples]``.
-        sums: of a circuit that adds, what it has to add; it is proved by substitution.
-        pieces: circuits with claims of their own whose references stand for them while this one is proved.
     """
 
     part: str
@@ -73,8 +70,6 @@ class Claim:
     held: tuple[str, ...] = ()
     masks: Mapping[str, Mask] = field(default_factory=dict)
     matters: Mapping[str, Callable[[Samples], NDArray[np.bool_]]] = field(default_factory=dict)
-    sums: Sums | None = None
-    pieces: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,13 +1,12 @@
 """What a network of sums of tables has to compute: layer by layer, as its model defines them.
 
 A layer's totals are proved to be sums of the model's tables (`wnn2hdl.verify.addition`), on all words that
-may occur. What saturates them is proved against the definition, on every total. The whole network is then
-proved with the reference of each of these circuits in its place: if it is right with what the model says of
-them, and they are what the model says, it is right. Which words may occur on a layer is found from the model:
-those that the layer before can make at all.
+may occur. What saturates them is proved against the definition, on every total, and so is the winner. What is
+left is wiring, which makes the model of these pieces (`wnn2hdl.verify.composition`). Which words may occur on
+a layer is found from the model: those that the layer before can make at all.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,57 +16,56 @@ from wnn2hdl.ir.models import SumLayer, TableSumModel
 from wnn2hdl.ir.models.sums import Total
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify.addition import Sums, TableSum
-from wnn2hdl.verify.network import SAMPLES
+from wnn2hdl.verify.composition import Box, Composition, Piece, bits
+from wnn2hdl.verify.network import PART, SAMPLES
 from wnn2hdl.verify.reference import class_bits, lookup, module, winning
 from wnn2hdl.verify.specification import Claim, Samples, Specification
 
 
 def sums_specification(model: TableSumModel) -> Specification:
-    """The claims of a model whose features are words."""
-    claims: list[Claim] = []
+    """The claim of a model whose features are words, and those of its pieces."""
+    pieces: dict[str, Piece] = {}
+    boxes: dict[str, Box] = {}
     reference: list[str] = []
+
+    def add(part: str, box: str, piece: Piece, lines: Sequence[str], drivers: Sequence[str]) -> list[str]:
+        """Add a piece that reads these bits; what drives the bits of its outputs."""
+        pieces[part] = piece
+        left = iter(drivers)
+        inputs = {
+            port: tuple(bit for _, bit in zip(range(width), left, strict=False))
+            for port, width in piece.inputs.items()
+        }
+        boxes[box] = Box(part, inputs)
+        reference.append(module(f"proof__{part}", piece.inputs, piece.outputs, lines))
+        return [bit for port, width in piece.outputs.items() for bit in bits(f"{box}.{port}", width)]
+
+    drivers = list(bits("features", model.width))
     for number in range(len(model.layers)):
-        for claim, lines in (_adding(model, number), _saturating(model, number)):
-            claims.append(claim)
-            reference.append(module(claim.module, claim.inputs, claim.outputs, lines))
-    network = _network(model, tuple(claim.part for claim in claims))
-    reference.append(module(network.module, network.inputs, network.outputs, _wiring(model, claims)))
-    return Specification({claim.part: claim for claim in (*claims, network)}, "\n".join(reference), "")
+        drivers = add(f"layer_{number}", f"adds_{number}", *_adding(model, number), drivers)
+        drivers = add(f"saturation_{number}", f"saturates_{number}", *_saturating(model, number), drivers)
+    drivers = add("winner", "winner", *_winner(model), drivers)
+    composition = Composition(PART, pieces, boxes, {"class_bits": tuple(drivers)})
+    claim = _network(model)
+    reference.append(module(claim.module, claim.inputs, claim.outputs, _wiring(pieces)))
+    return Specification({PART: claim}, "\n".join(reference), "", composition)
 
 
-def _adding(model: TableSumModel, number: int) -> tuple[Claim, list[str]]:
+def _adding(model: TableSumModel, number: int) -> tuple[Piece, list[str]]:
     """``words`` to the total of each node: the sum of its edges and `Total.offset`."""
     layer, totals, occurring = model.layers[number], model.totals[number], model.occurring(number)
-    sums = Sums(
-        "words",
-        layer.input_bits,
-        occurring,
-        tuple(
-            TableSum(f"total_{node}", _tables(layer, node), total.offset) for node, total in enumerate(totals)
-        ),
+    added = tuple(
+        TableSum(f"total_{node}", total.bits, _tables(layer, node), total.offset)
+        for node, total in enumerate(totals)
     )
-
-    def answers(inputs: Samples) -> dict[str, Bits]:
-        bits = inputs["words"].reshape(len(inputs["words"]), -1, layer.input_bits)
-        words = (bits @ (1 << np.arange(layer.input_bits, dtype=np.int64))).T
-        found = {}
-        for node, total in enumerate(totals):
-            value = np.full(words.shape[1], total.offset)
-            for source, table in _tables(layer, node).items():
-                value += table[words[source]]
-            found[f"total_{node}"] = codes_to_bits(value % (1 << total.bits), total.bits)
-        return found
-
-    claim = Claim(
-        f"layer_{number}",
+    piece = Piece(
+        "the totals are sums of the model's tables, for all words that may occur",
+        None,
         {"words": len(occurring) * layer.input_bits},
         {f"total_{node}": total.bits for node, total in enumerate(totals)},
-        f"proof__layer_{number}",
-        answers,
-        lambda: {"words": _words(occurring)},
-        sums=sums,
+        sums=Sums("words", layer.input_bits, occurring, added),
     )
-    return claim, _sum_lines(layer, totals)
+    return piece, _sum_lines(layer, totals)
 
 
 def _tables(layer: SumLayer, node: int) -> dict[int, NDArray[np.int64]]:
@@ -105,20 +103,12 @@ def _sum_lines(layer: SumLayer, totals: Sequence[Total]) -> list[str]:
     return lines
 
 
-def _saturating(model: TableSumModel, number: int) -> tuple[Claim, list[str]]:
+def _saturating(model: TableSumModel, number: int) -> tuple[Piece, list[str]]:
     """Totals to ``words``: below the range of a node is its lowest value, above it is its highest."""
     layer, totals = model.layers[number], model.totals[number]
     size = layer.output_bits
     # A node's lowest value is the address 0, and its total that plus these.
     least = [total.offset + layer.lowest for total in totals]
-
-    def answers(inputs: Samples) -> dict[str, Bits]:
-        words = []
-        for node, total in enumerate(totals):
-            value = inputs[f"total_{node}"] @ (1 << np.arange(total.bits, dtype=np.int64))
-            words.append(codes_to_bits(np.clip(value - least[node], 0, (1 << size) - 1), size))
-        return {"words": np.concatenate(words, axis=1)}
-
     lines = []
     for node, total in enumerate(totals):
         # One bit more than both numbers need.
@@ -130,18 +120,27 @@ def _saturating(model: TableSumModel, number: int) -> tuple[Claim, list[str]]:
             f"  assign words[{(node + 1) * size - 1}:{node * size}] = wide_{node} < {width}'d{least[node]} ? "
             f"{size}'d0 : wide_{node} >= {above} ? {size}'d{(1 << size) - 1} : within_{node}[{size - 1}:0];",
         ]
-    claim = Claim(
-        f"saturation_{number}",
+    piece = Piece(
+        "the words are the totals, saturated, for all totals",
+        f"proof__saturation_{number}",
         {f"total_{node}": total.bits for node, total in enumerate(totals)},
         {"words": size * len(totals)},
-        f"proof__saturation_{number}",
-        answers,
-        None,
     )
-    return claim, lines
+    return piece, lines
 
 
-def _network(model: TableSumModel, pieces: tuple[str, ...]) -> Claim:
+def _winner(model: TableSumModel) -> tuple[Piece, list[str]]:
+    count, size = len(model.classes), model.layers[-1].output_bits
+    piece = Piece(
+        f"the index of the largest number, of equal ones the {model.ties}, for all numbers",
+        "proof__winner",
+        {f"response_{number}": size for number in range(count)},
+        {"class_bits": class_bits(model)},
+    )
+    return piece, winning(count, size, ties=model.ties)
+
+
+def _network(model: TableSumModel) -> Claim:
     width = class_bits(model)
 
     def answers(inputs: Samples) -> dict[str, Bits]:
@@ -150,29 +149,29 @@ def _network(model: TableSumModel, pieces: tuple[str, ...]) -> Claim:
     def stimulus() -> dict[str, Bits]:
         return {"features": _words(model.occurring(0))}
 
-    return Claim(
-        "network",
-        {"features": model.width},
-        {"class_bits": width},
-        "proof__network",
-        answers,
-        stimulus,
-        pieces=pieces,
-    )
+    inputs, outputs = {"features": model.width}, {"class_bits": width}
+    return Claim(PART, inputs, outputs, f"proof__{PART}", answers, stimulus)
 
 
-def _wiring(model: TableSumModel, claims: Sequence[Claim]) -> list[str]:
-    """The layers one after the other, and the winner."""
-    lines, nets = [], {"words": "features"}
-    for number, claim in enumerate(claims):
-        driven = {port: f"stage_{number}_{port}" for port in claim.outputs}
-        lines += [f"  wire [{width - 1}:0] {driven[port]};" for port, width in claim.outputs.items()]
-        inputs = {port: nets[port] for port in claim.inputs}
-        pins = ", ".join(f".{port}({net})" for port, net in [*inputs.items(), *driven.items()])
-        lines.append(f"  {claim.module} stage_{number} ({pins});")
-        nets = driven
-    size = model.layers[-1].output_bits
-    for number in range(len(model.classes)):
-        word = f"{nets['words']}[{(number + 1) * size - 1}:{number * size}]"
-        lines.append(f"  wire [{size - 1}:0] response_{number} = {word};")
-    return [*lines, *winning(len(model.classes), size, ties=model.ties)]
+def _wiring(pieces: Mapping[str, Piece]) -> list[str]:
+    """The pieces one after the other, each of which reads all that the one before makes."""
+    lines: list[str] = []
+    word = "features"
+    for part, piece in pieces.items():
+        made = f"made_{part}"
+        pins = [*_pins(piece.inputs, word), *_pins(piece.outputs, made)]
+        lines += [
+            f"  wire [{sum(piece.outputs.values()) - 1}:0] {made};",
+            f"  proof__{part} {part} ({', '.join(pins)});",
+        ]
+        word = made
+    return [*lines, f"  assign class_bits = {word};"]
+
+
+def _pins(ports: Mapping[str, int], word: str) -> list[str]:
+    """Ports connected to the bits of a word, the first to the lowest."""
+    ends = np.cumsum(list(ports.values())).tolist()
+    return [
+        f".{port}({word}[{end - 1}:{end - width}])"
+        for (port, width), end in zip(ports.items(), ends, strict=True)
+    ]

@@ -67,15 +67,18 @@ def test_a_clock_that_cannot_be_met_writes_nothing(tmp_path: Path) -> None:
 def test_sums_of_tables_are_built_and_proved_layer_by_layer(tmp_path: Path) -> None:
     built = compile_model(sum_network(5), tmp_path / "sums", CompileOptions(style="equations"), silent)
     assert built.failure is None
-    parts = {"layer_0", "saturation_0", "layer_1", "saturation_1", "network", "sobel"}
+    parts = {"layer_0", "saturation_0", "layer_1", "saturation_1", "winner", "network", "sobel"}
     assert set(built.report["parts"]) == parts
     assert "sums by substitution" in built.report["proof"]["method"]
 
 
-@pytest.mark.parametrize("options", [CompileOptions(stages=2), CompileOptions(clock=100)])
-def test_sums_of_tables_are_not_pipelined(tmp_path: Path, options: CompileOptions) -> None:
-    with pytest.raises(InputError, match="sums of tables cannot be pipelined yet"):
-        compile_model(sum_network(5), tmp_path / "sums", options, silent)
+@pytest.mark.slow
+def test_sums_of_tables_become_pipelines(tmp_path: Path) -> None:
+    built = compile_model(sum_network(5), tmp_path / "sums", CompileOptions(stages=3), silent)
+    assert built.failure is None
+    assert built.report["proof"]["status"] == "proved"
+    assert built.report["latency"] == 3
+    assert built.report["parts"]["network"]["ffs"] > 0
 
 
 def test_the_words_of_a_model_can_be_narrowed() -> None:

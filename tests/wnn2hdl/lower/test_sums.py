@@ -38,7 +38,7 @@ def test_sums_far_beyond_their_range_saturate(slope: int) -> None:
 def test_layers_are_circuits_of_their_own() -> None:
     model = sum_network(3)
     parts = network(model).definitions()
-    assert list(parts) == ["layer_0", "saturation_0", "layer_1", "saturation_1", "network"]
+    assert list(parts) == ["layer_0", "saturation_0", "layer_1", "saturation_1", "winner", "network"]
     assert [port.width for port in parts["layer_0"].outputs] == [total.bits for total in model.totals[0]]
 
 

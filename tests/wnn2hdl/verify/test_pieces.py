@@ -11,7 +11,6 @@ from wnn2hdl.emit import verilog
 from wnn2hdl.ir.circuit import Circuit as Definition
 from wnn2hdl.lower.structural import network
 from wnn2hdl.minimise.circuit import minimise
-from wnn2hdl.verify.counters import adds_up
 from wnn2hdl.verify.equivalence import UNDECIDED, Circuit, find_differences
 from wnn2hdl.verify.network import network_specification
 from wnn2hdl.verify.proof import WIRING, Proof, prove
@@ -93,21 +92,6 @@ def adder(total: str) -> Circuit:
         ),
         "adder",
     )
-
-
-@pytest.mark.parametrize(
-    ("total", "weights", "shown"),
-    [
-        ("{carry, odd}", (1, 1, 1), True),
-        ("{carry, odd}", (1, 1, 0), False),
-        ("{odd, carry}", (1, 1, 1), False),
-        ("{carry, ~odd}", (1, 1, 1), False),
-    ],
-)
-def test_arithmetic_shows_what_a_counter_adds_and_nothing_else(
-    total: str, weights: tuple[int, ...], shown: bool
-) -> None:
-    assert adds_up(adder(total), "bits", weights, 0, "total") == shown
 
 
 def test_a_diagram_that_grows_too_large_is_left_to_sat() -> None:
