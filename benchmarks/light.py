@@ -19,7 +19,7 @@ from wnn2hdl.dataset import CLASSES, ColourHistogram, colour_histogram, from_mas
 from wnn2hdl.ir import Comparison, Relational, WisardModel
 from wnn2hdl.markdown import head, row
 from wnn2hdl.training.bitselect import MOST_LUTS, look_up_table, select_bits
-from wnn2hdl.training.crossval import EXPOSURES, cross_validated
+from wnn2hdl.training.crossval import EXPOSURES, shares_right
 
 SHAPES = {name: Comparison.parse(name) for name in ("R>=0", "R>=B", "3R>=2B")}
 """Comparisons, whose offset is trained."""
@@ -69,8 +69,7 @@ def bit_selection(luts: int, seed: int, images: Sequence[ColourHistogram]) -> Wi
 
 def by_exposure(images: Sequence[ColourHistogram], train: Trainer) -> NDArray[np.float64]:
     """Share of right pixels of each unseen image at each exposure: ``[images, exposures]``."""
-    right = cross_validated(images, lambda chosen: train([images[i] for i in chosen]), EXPOSURES)
-    return np.asarray(right / np.array([[image.counts.sum()] for image in images]))
+    return shares_right(images, lambda chosen: train([images[i] for i in chosen]))
 
 
 if __name__ == "__main__":

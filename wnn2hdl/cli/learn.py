@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
-from numpy.typing import NDArray
 
+from wnn2hdl.cli.learned import save_front, train_sentence, train_summary
 from wnn2hdl.cli.luts import OPTIONS as LUT_NETWORK
 from wnn2hdl.cli.luts import (
     distort_option,
@@ -50,17 +49,16 @@ from wnn2hdl.cli.vectors import (
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.encode import Spacing, high_bits, parse_bits
 from wnn2hdl.errors import InputError
-from wnn2hdl.evaluation.light import brighter_figures, brighter_warning
 from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
-from wnn2hdl.ir import WisardModel, picture_encoder
+from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
-from wnn2hdl.training.budget import LIGHT, Point, measure, pareto_front, train_under_budget
-from wnn2hdl.training.discriminators import LEFT_OUT, train, with_colours
+from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
+from wnn2hdl.training.discriminators import train, with_colours
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 from wnn2hdl.training.tables import TableOptions
 
@@ -100,7 +98,7 @@ class Discriminators:
 
 
 IMAGES = ("--images", "--masks", *MASKS, *READING, "--regions", "--chips")
-OTHERS = ("--luts-per-pixel", "--neighbourhood", "--pareto", "--trials")
+OTHERS = ("--luts-per-pixel", "--nested", "--neighbourhood", "--pareto", "--trials")
 
 DISCRIMINATORS = ("--bits", "--address-bits", "--rams", "--bleach", "--balance")
 
@@ -156,6 +154,7 @@ SECTIONS = {
     metavar="N",
     help="Find the best of at most N LUTs per pixel.",
 )
+@click.option("--nested", is_flag=True, help="State its accuracy by choosing it once more inside each fold.")
 @click.option(
     "--neighbourhood",
     type=click.Choice(["3", "5"]),
@@ -186,6 +185,7 @@ def train_command(
     epochs: int | None,
     distort: int,
     luts_per_pixel: int | None,
+    nested: bool,
     neighbourhood: str | None,
     pareto: bool,
     trials: int,
@@ -242,6 +242,8 @@ def train_command(
         images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
     )
     chosen = Discriminators(**discriminators)
+    if luts_per_pixel is None or neighbourhood is not None or pareto:
+        refuse(("--nested",), "only a choice within --luts-per-pixel is nested")
     # Before the training, so that a place that cannot be written is reported at once.
     make_folder(output.parent)
     points: tuple[Point, ...] = ()
@@ -261,17 +263,19 @@ def train_command(
             )
         elif luts_per_pixel is not None:
             chosen.require_none("--luts-per-pixel")
-            model = train_under_budget(dataset, luts_per_pixel, trials=trials, seed=seed, progress=report)
+            model = train_under_budget(
+                dataset, luts_per_pixel, trials=trials, seed=seed, progress=report, nested=nested
+            )
         else:
             model = chosen.train(dataset, seed, report)
         model = with_colours(model, dataset, report)
         command = spoken_command({"output", "as_json"})
         model = replace(model, training={**model.training, COMMAND: command})
         model.save(output)
-        summary = _summary(model, output, len(dataset))
+        summary = train_summary(model, output, len(dataset))
         if pareto:
-            summary["front"] = _save_front(points, output, model.colours)
-    emit(summary, _sentence(summary), as_json=as_json)
+            summary["front"] = save_front(points, output, model.colours)
+    emit(summary, train_sentence(summary), as_json=as_json)
 
 
 def _train_on_table(
@@ -294,75 +298,3 @@ def _train_on_table(
     with held(output, "model"), progress() as report:
         summary = train(command=command, output=output, progress=report)
     emit(summary, sentence(summary), as_json=as_json)
-
-
-def _summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
-    saturation = model.saturation
-    return {
-        "model": str(output),
-        "classes": list(model.classes),
-        "address_bits": model.address_bits,
-        "rams": model.rams,
-        "bits": list(model.encoder.names),
-        "bleaching": model.bleaching,
-        "images": images,
-        "saturation": {"mean": float(saturation.mean()), "highest": float(saturation.max())},
-        "brighter": brighter_figures(_shares(model), picture_encoder(model)),
-        "training": dict(model.training),
-    }
-
-
-def _shares(model: WisardModel) -> dict[float, float]:
-    """Accuracy on unseen images by exposure, if the training measured it."""
-    light = model.training.get(LIGHT, {})
-    return {float(exposure): figures["accuracy"] for exposure, figures in light.items()}
-
-
-def _sentence(summary: dict[str, Any]) -> str:
-    saturation = summary["saturation"]
-    lines = [
-        f"{summary['model']}: {' / '.join(summary['classes'])}, {summary['rams']} RAMs of "
-        f"{summary['address_bits']} address bits over {','.join(summary['bits'])}",
-        f"bleaching threshold {summary['bleaching']}, trained on {summary['images']} images; "
-        f"RAMs {saturation['mean']:.0%} set, {saturation['highest']:.0%} at most",
-    ]
-    lines += [
-        f"light x{exposure}: {figures['accuracy']:.2%} of the pixels of unseen images, "
-        f"{figures['worst_image']:.2%} of the worst one's; expect {figures['other_images'][0]:.2%} "
-        f"to {figures['other_images'][1]:.2%} of as many others"
-        for exposure, figures in summary["training"].get(LIGHT, {}).items()
-    ]
-    warning = brighter_warning(summary["brighter"])
-    lines += [warning] if warning else []
-    left_out = summary["training"][LEFT_OUT]
-    if left_out["pixels"]:
-        lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")
-    lines += [
-        f"{point['luts']} LUTs per pixel: {point['accuracy']:.2%} in cross-validation by image, "
-        f"{point['method']}, {point['model']}"
-        for point in summary.get("front", ())
-    ]
-    return "\n".join(lines)
-
-
-def _save_front(
-    points: tuple[Point, ...], output: Path, colours: NDArray[np.int64] | None
-) -> list[dict[str, Any]]:
-    """Write a model for each point of the front, and the plot, beside the best model."""
-    # Not at the top: other trainings need not wait for it.
-    from wnn2hdl.report.plots import plot_pareto
-
-    front = pareto_front(points)
-    rows = []
-    for point in front:
-        path = output.with_name(f"{output.stem}-{point.luts}luts.json")
-        replace(point.model, colours=colours).save(path)
-        rows.append(
-            {"luts": point.luts, "accuracy": point.accuracy, "method": point.method, "model": str(path)}
-        )
-    plot_pareto(
-        [(point.luts, point.accuracy, point.method) for point in points],
-        [(point.luts, point.accuracy, point.method) for point in front],
-        output.with_name(f"{output.stem}-pareto"),
-    )
-    return rows

@@ -19,7 +19,8 @@ from wnn2hdl.minimise import map_luts
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import MOST_LUTS, look_up_table, select_bits
 from wnn2hdl.training.comparisons import select_comparisons
-from wnn2hdl.training.crossval import EXPOSURES, Trainer, cross_validate, cross_validated
+from wnn2hdl.training.crossval import EXPOSURES, Trainer, cross_validate, fold_count, shares_right
+from wnn2hdl.training.promise import light_figures
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
 ADDRESS_BITS = 4
@@ -38,7 +39,8 @@ WITHIN = (7,)
 LIGHT = "in_light"
 """Key in `WisardModel.training` of how accurate the classifier was in cross-validation, by exposure."""
 
-RESAMPLES = 2000
+NESTED = "nested"
+"""Key in `WisardModel.training` of the methods that nested cross-validation chose in its folds."""
 
 CARE_SHARES = (0.0, 1e-5, 1e-4, 1e-3)
 """Share of the training pixels that a code must make up to be cared for; 0 for every code that occurs."""
@@ -70,7 +72,13 @@ class Point:
 
 
 def train_under_budget(
-    dataset: Dataset, luts_per_pixel: int, *, trials: int, seed: int, progress: Progress
+    dataset: Dataset,
+    luts_per_pixel: int,
+    *,
+    trials: int,
+    seed: int,
+    progress: Progress,
+    nested: bool = False,
 ) -> WisardModel:
     """The most accurate classifier whose exact circuit takes at most ``luts_per_pixel`` LUTs per pixel.
 
@@ -78,11 +86,13 @@ def train_under_budget(
     that are equally accurate it is the one with the fewest LUTs; it is trained on all images.
 
     Args:
-        dataset: at least two images.
+        dataset: at least two images; three if nested.
         luts_per_pixel: the budget, at least 1.
         trials: random mappings of the discriminators that are tried; 0 leaves them out.
         seed: of all that is random.
         progress: called with each image read and each candidate measured.
+        nested: state the accuracy of the whole choice: it is made once more inside each fold, without the
+            images that then judge it. Otherwise the images that choose the classifier also judge it.
 
     Raises:
         InputError: the images cannot be used, or nothing fits.
@@ -91,21 +101,28 @@ def train_under_budget(
         raise InputError(
             "a classifier takes at least one LUT per pixel", value=luts_per_pixel, hint="allow 1 or more"
         )
-    points = measure(dataset, trials=trials, seed=seed, progress=progress, luts_per_pixel=luts_per_pixel)
-    fitting = [point for point in points if point.luts <= luts_per_pixel]
-    if not fitting:
-        raise InputError(
-            f"no classifier of at most {luts_per_pixel} LUTs per pixel was found",
-            value=f"{len(points)} candidates",
-            hint="allow more, or try more mappings",
-        )
-    best = max(fitting, key=lambda point: (point.steady, -point.luts))
-    figures = {
-        "luts": best.luts,
-        "cross_validated_accuracy": best.accuracy,
-        LIGHT: light_figures(best, seed),
-        "images": list(dataset.names),
-    }
+    if nested and len(dataset) < 3:
+        raise InputError("nested cross-validation needs three images", value=len(dataset), hint="give more")
+    images = _read(dataset, progress)
+    search = partial(
+        _measure, classes=dataset.classes, luts_per_pixel=luts_per_pixel, trials=trials, seed=seed
+    )
+    best = _best(search(images, progress=progress), luts_per_pixel)
+    assert best.light is not None
+    light = best.light
+    figures: dict[str, Any] = {"luts": best.luts, "cross_validated_accuracy": best.accuracy}
+    if nested:
+        inside: list[Point] = []
+
+        def choose(chosen: Sequence[int]) -> WisardModel:
+            progress("choosing in each fold", len(inside), fold_count(images))
+            points = search([images[i] for i in chosen], progress=_silent)
+            inside.append(_best(points, luts_per_pixel))
+            return inside[-1].model
+
+        light = shares_right(images, choose)
+        figures[NESTED] = [point.method for point in inside]
+    figures |= {LIGHT: light_figures(light), "images": list(dataset.names)}
     return replace(best.model, training={**best.model.training, **figures})
 
 
@@ -130,21 +147,58 @@ def measure(
     Raises:
         InputError: the images cannot be used.
     """
-    images = [
-        colour_histogram(image, len(dataset.classes))
-        for image in reported(dataset, "reading images", len(dataset), progress)
-    ]
-    methods = [*_bit_selections(images, dataset.classes, seed, luts_per_pixel)]
-    methods += _comparisons(images, dataset.classes, seed, luts_per_pixel)
-    methods += _discriminators(images, dataset.classes, trials, seed, progress)
+    images = _read(dataset, progress)
+    return _measure(
+        images,
+        classes=dataset.classes,
+        luts_per_pixel=luts_per_pixel,
+        trials=trials,
+        seed=seed,
+        progress=progress,
+    )
+
+
+def _read(dataset: Dataset, progress: Progress) -> list[ColourHistogram]:
+    read = reported(dataset, "reading images", len(dataset), progress)
+    return [colour_histogram(image, len(dataset.classes)) for image in read]
+
+
+def _measure(
+    images: Sequence[ColourHistogram],
+    *,
+    classes: tuple[str, ...],
+    luts_per_pixel: int | None,
+    trials: int,
+    seed: int,
+    progress: Progress,
+) -> tuple[Point, ...]:
+    methods = [*_bit_selections(images, classes, seed, luts_per_pixel)]
+    methods += _comparisons(images, classes, seed, luts_per_pixel)
+    methods += _discriminators(images, classes, trials, seed, progress)
     points = []
     for name, train in reported(methods, "measuring candidates", len(methods), progress):
-        right = cross_validated(images, train, EXPOSURES)
+        light = shares_right(images, train)
         pixels = np.array([image.counts.sum() for image in images])
-        accuracy = float(right[:, EXPOSURES.index(1.0)].sum() / pixels.sum())
+        accuracy = float((light[:, EXPOSURES.index(1.0)] * pixels).sum() / pixels.sum())
         model = train(range(len(images)))
-        points.append(Point(pixel_luts(model), accuracy, name, model, right / pixels[:, np.newaxis]))
+        points.append(Point(pixel_luts(model), accuracy, name, model, light))
     return tuple(points)
+
+
+def _silent(step: str, done: int, total: int) -> None:
+    """A choice inside a fold is one step of the whole."""
+
+
+def _best(points: Sequence[Point], luts_per_pixel: int) -> Point:
+    """The most accurate point of at most so many LUTs; raises InputError if there is none."""
+    fitting = [point for point in points if point.luts <= luts_per_pixel]
+    if not fitting:
+        raise InputError(
+            f"no classifier of at most {luts_per_pixel} LUTs per pixel was found",
+            value=f"{len(points)} candidates",
+            hint="allow more, or try more mappings",
+        )
+    return max(fitting, key=lambda point: (point.steady, -point.luts))
 
 
 def pixel_luts(model: WisardModel) -> int:
@@ -156,30 +210,6 @@ def pixel_luts(model: WisardModel) -> int:
         for table in tables
         if isinstance(table.function, TruthTable)
     )
-
-
-def light_figures(point: Point, seed: int) -> dict[str, dict[str, Any]]:
-    """How accurate a classifier was on images that it had not seen, for each of `EXPOSURES`.
-
-    Returns:
-        For each exposure the mean over images, the lowest of an image, and an interval that holds the mean of
-        as many other images with the probability 0.95: images are drawn again twice, for the doubt about
-        these images and for the choice of the others.
-    """
-    assert point.light is not None
-    count = len(point.light)
-    rng = np.random.default_rng(seed)
-    drawn = rng.integers(count, size=(RESAMPLES, count))
-    again = np.take_along_axis(drawn, rng.integers(count, size=drawn.shape), axis=1)
-    figures = {}
-    for exposure, shares in zip(EXPOSURES, point.light.T, strict=True):
-        low, high = np.percentile(shares[again].mean(axis=1), (2.5, 97.5))
-        figures[f"{exposure:g}"] = {
-            "accuracy": float(shares.mean()),
-            "other_images": [float(low), float(high)],
-            "worst_image": float(shares.min()),
-        }
-    return figures
 
 
 def pareto_front(points: Iterable[Point]) -> tuple[Point, ...]:

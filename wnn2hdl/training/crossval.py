@@ -29,6 +29,23 @@ def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
     return float(right / sum(int(image.counts.sum()) for image in images))
 
 
+def fold_count(images: Sequence[ColourHistogram]) -> int:
+    """How many folds cross-validation makes of these images."""
+    return min(FOLDS, len(images))
+
+
+def shares_right(images: Sequence[ColourHistogram], train: Trainer) -> NDArray[np.float64]:
+    """Share of each image's pixels that are right in each light, by a model that has not seen the image.
+
+    See `cross_validated` for the folds and what is raised.
+
+    Returns:
+        float64 ``[images, exposures]``, 0 to 1, for each of `EXPOSURES`.
+    """
+    right = cross_validated(images, train, EXPOSURES)
+    return np.asarray(right / np.array([[image.counts.sum()] for image in images]))
+
+
 def cross_validated(
     images: Sequence[ColourHistogram], train: Trainer, exposures: Sequence[float]
 ) -> NDArray[np.int64]:
@@ -50,7 +67,7 @@ def cross_validated(
     """
     if len(images) < 2:
         raise InputError("cross-validation by image needs two images", value=len(images), hint="give more")
-    folds = min(FOLDS, len(images))
+    folds = fold_count(images)
     right = np.zeros((len(images), len(exposures)), dtype=np.int64)
     for fold in range(folds):
         model = train([i for i in range(len(images)) if i % folds != fold])

@@ -10,6 +10,8 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
+from wnn2hdl.dataset import from_samples
+
 Run = Callable[..., Any]
 
 
@@ -87,6 +89,29 @@ def test_garbage_gets_one_line(run: Run, folders: tuple[Path, Path], tmp_path: P
     assert "16" in train_on_these()
     assert "X9" in train("--images", images, "--masks", masks, "--bits", "X9")
     assert not model.exists()
+
+
+def test_a_choice_says_what_to_expect_of_other_images(run: Run, tmp_path: Path) -> None:
+    for image in from_samples(3, 32, seed=3):
+        save(tmp_path / "images" / f"{image.name}.png", image.picture)
+        save(tmp_path / "masks" / f"{image.name}.png", 255 * image.label_picture)
+    words = (
+        "train", "--images", tmp_path / "images", "--masks", tmp_path / "masks", "--luts-per-pixel", 1,
+        "--trials", 0, "--nested", "-o", tmp_path / "m.json",
+    )  # fmt: skip
+    figures = json.loads(run(*words, "--json").stdout)["training"]["in_light"]["1"]
+    low, high = figures["other_images"]
+    assert 0 <= low < figures["accuracy"] < high <= 1
+    text = run(*words).stdout
+    assert f"light x1: {figures['accuracy']:.2%} of the pixels of unseen images" in text
+    assert f"expect {low:.2%} to {high:.2%} of 10 others" in text
+    assert "chosen inside the folds: bit selection, 1 LUT (3 of 3)" in text
+
+
+def test_only_a_choice_can_be_nested(run: Run, folders: tuple[Path, Path], tmp_path: Path) -> None:
+    images, masks = folders
+    words = ("train", "--images", images, "--masks", masks, "--nested", "-o", tmp_path / "m.json")
+    assert "only a choice within --luts-per-pixel is nested: --nested" in run(*words).complaint()
 
 
 def test_options_that_a_neighbourhood_has_no_use_for_are_refused(run: Run, tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wnn2hdl.dataset import Dataset, from_samples
+from wnn2hdl.dataset import Dataset, colour_histogram, from_samples
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import BitSelect, Lut, LutNetwork, WisardModel
 from wnn2hdl.lower.table import pixel_table
@@ -10,12 +10,12 @@ from wnn2hdl.training.bitselect import look_up_table
 from wnn2hdl.training.budget import (
     Point,
     circuit_model,
-    light_figures,
     measure,
     pareto_front,
     saturates,
     train_under_budget,
 )
+from wnn2hdl.training.crossval import pixels_right
 
 TABLE = look_up_table(BitSelect(("R7",)), ("a", "b"), np.array([0, 1]), {})
 
@@ -62,12 +62,6 @@ def test_light_decides_between_classifiers_that_are_as_good_without_it() -> None
     light = np.array([[0.9, 0.9, 0.5, 0.5], [0.7, 0.9, 0.9, 0.9]])
     point = Point(1, 0.9, "", TABLE, light)
     assert point.steady == pytest.approx(light.mean())
-    figures = light_figures(point, seed=0)
-    assert list(figures) == ["0.8", "1", "1.25", "1.5"]
-    assert figures["0.8"]["accuracy"] == pytest.approx(0.8)
-    assert figures["1.25"]["worst_image"] == 0.5
-    assert figures["1.25"]["other_images"] == [0.5, 0.9]
-    assert figures["1"]["other_images"] == pytest.approx([0.9, 0.9])
 
 
 def test_cost_is_that_of_the_models_exact_circuit(points: tuple[Point, ...]) -> None:
@@ -100,6 +94,28 @@ def test_the_most_accurate_that_fits_is_returned_with_its_figures(
     assert figures["cross_validated_accuracy"] == single.accuracy
     assert model.digest() == single.model.digest()
     assert figures["images"] == list(dataset.names)
+
+
+def test_a_nested_choice_is_judged_by_images_that_had_no_part_in_it() -> None:
+    five = from_samples(5, 32, seed=1)
+    model = train_under_budget(five, 1, trials=0, seed=0, progress=silent, nested=True)
+    chosen_with_all = train_under_budget(five, 1, trials=0, seed=0, progress=silent)
+    assert model.digest() == chosen_with_all.digest()
+    worst = []
+    for fold, name in enumerate(five.names):
+        others = five.subset(set(five.names) - {name})
+        inside = train_under_budget(others, 1, trials=0, seed=0, progress=silent)
+        assert inside.training["method"] == "bit selection"
+        assert model.training["nested"][fold].startswith("bit selection")
+        image = colour_histogram(five.load(name), 2)
+        worst.append(pixels_right(inside, image) / image.counts.sum())
+    assert model.training["in_light"]["1"]["accuracy"] == pytest.approx(np.mean(worst))
+    assert model.training["in_light"]["1"]["worst_image"] == pytest.approx(min(worst))
+
+
+def test_a_nested_choice_needs_three_images() -> None:
+    with pytest.raises(InputError, match="nested cross-validation needs three images: 2; give more"):
+        train_under_budget(from_samples(2, 32, seed=0), 1, trials=0, seed=0, progress=silent, nested=True)
 
 
 def test_a_budget_below_one_lut_is_refused(dataset: Dataset) -> None:

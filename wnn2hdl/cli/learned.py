@@ -1,0 +1,99 @@
+"""What `train` says of a model of pictures, and the front of models that it writes."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wnn2hdl.evaluation.light import brighter_figures, brighter_warning
+from wnn2hdl.ir import WisardModel, picture_encoder
+from wnn2hdl.training.budget import LIGHT, NESTED, Point, pareto_front
+from wnn2hdl.training.discriminators import LEFT_OUT
+from wnn2hdl.training.promise import OTHERS
+
+
+def train_summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
+    """What a model is and how it was trained, for programs.
+
+    Args:
+        model: of pictures.
+        output: its file.
+        images: how many it was trained on.
+    """
+    saturation = model.saturation
+    return {
+        "model": str(output),
+        "classes": list(model.classes),
+        "address_bits": model.address_bits,
+        "rams": model.rams,
+        "bits": list(model.encoder.names),
+        "bleaching": model.bleaching,
+        "images": images,
+        "saturation": {"mean": float(saturation.mean()), "highest": float(saturation.max())},
+        "brighter": brighter_figures(_shares(model), picture_encoder(model)),
+        "training": dict(model.training),
+    }
+
+
+def _shares(model: WisardModel) -> dict[float, float]:
+    """Accuracy on unseen images by exposure, if the training measured it."""
+    light = model.training.get(LIGHT, {})
+    return {float(exposure): figures["accuracy"] for exposure, figures in light.items()}
+
+
+def train_sentence(summary: dict[str, Any]) -> str:
+    """What `train_summary` found, for people."""
+    saturation = summary["saturation"]
+    lines = [
+        f"{summary['model']}: {' / '.join(summary['classes'])}, {summary['rams']} RAMs of "
+        f"{summary['address_bits']} address bits over {','.join(summary['bits'])}",
+        f"bleaching threshold {summary['bleaching']}, trained on {summary['images']} images; "
+        f"RAMs {saturation['mean']:.0%} set, {saturation['highest']:.0%} at most",
+    ]
+    lines += [
+        f"light x{exposure}: {figures['accuracy']:.2%} of the pixels of unseen images, "
+        f"{figures['worst_image']:.2%} of the worst one's; expect {figures['other_images'][0]:.2%} "
+        f"to {figures['other_images'][1]:.2%} of {OTHERS} others"
+        for exposure, figures in summary["training"].get(LIGHT, {}).items()
+    ]
+    if NESTED in summary["training"]:
+        methods = summary["training"][NESTED]
+        times = (f"{method} ({count} of {len(methods)})" for method, count in Counter(methods).items())
+        lines.append(f"chosen inside the folds: {'; '.join(times)}")
+    warning = brighter_warning(summary["brighter"])
+    lines += [warning] if warning else []
+    left_out = summary["training"][LEFT_OUT]
+    if left_out["pixels"]:
+        lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")
+    lines += [
+        f"{point['luts']} LUTs per pixel: {point['accuracy']:.2%} in cross-validation by image, "
+        f"{point['method']}, {point['model']}"
+        for point in summary.get("front", ())
+    ]
+    return "\n".join(lines)
+
+
+def save_front(
+    points: tuple[Point, ...], output: Path, colours: NDArray[np.int64] | None
+) -> list[dict[str, Any]]:
+    """Write a model for each point of the front, and the plot, beside the best model."""
+    # Not at the top: other trainings need not wait for it.
+    from wnn2hdl.report.plots import plot_pareto
+
+    front = pareto_front(points)
+    rows = []
+    for point in front:
+        path = output.with_name(f"{output.stem}-{point.luts}luts.json")
+        replace(point.model, colours=colours).save(path)
+        rows.append(
+            {"luts": point.luts, "accuracy": point.accuracy, "method": point.method, "model": str(path)}
+        )
+    plot_pareto(
+        [(point.luts, point.accuracy, point.method) for point in points],
+        [(point.luts, point.accuracy, point.method) for point in front],
+        output.with_name(f"{output.stem}-pareto"),
+    )
+    return rows
