@@ -9,14 +9,14 @@ EXTRAS ?=
 comma := ,
 STAMP := $(VENV)/.installed$(subst $(comma),-,$(EXTRAS))
 
-.PHONY: demo picture test lint types layers docs check clean
+.PHONY: demo pictures test lint types layers docs check clean
 
 demo: $(STAMP)
 	$(BIN)/wnn2hdl demo
 
-# The picture at the top of README, made by the demo.
-picture: demo
-	cp build/demo/overview.jpg docs/overview.jpg
+# The pictures that README and the pages show, made by the demo.
+pictures: demo
+	$(BIN)/python docs/pictures.py build/demo docs/pictures
 
 # A process for each core, but each needs up to a gigabyte. The tests of a file share what they build.
 test: $(STAMP)

@@ -14,7 +14,7 @@ def test_its_links_lead_somewhere() -> None:
 
 
 def test_its_picture_is_small() -> None:
-    assert (ROOT / "docs" / "overview.jpg").stat().st_size <= 250_000
+    assert (ROOT / "docs" / "pictures" / "overview.jpg").stat().st_size <= 250_000
 
 
 def test_it_stays_short() -> None:
