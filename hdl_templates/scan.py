@@ -13,8 +13,8 @@ of the pipeline may be empty:
    whether a line ended here. Malformed frames are found out.
 3. *Window.* A beat waits for its right neighbour, unless it is the last of a line.
 
-What a slot writes can be read three slots later. Nothing waits for that but the first slot of a line while
-that of the line before is in the first two steps, as happens where a line has one or two beats.
+What a slot writes can be read three cycles later. Nothing waits for that but the first slot of a line, while
+one of the first two slots of the line before is in the first two steps; later ones cannot be overtaken.
 """
 
 from dataclasses import dataclass, fields
@@ -59,7 +59,7 @@ class Slot:
         last: whether its beat is the last of a line.
         flush: whether it has no beat, but belongs to the repeated line below the last.
         first: whether it is the first of its line.
-        full: whether the memory ends here.
+        over: whether the memory has no place for it.
         place: in the memory.
         values: of the beat's pixels.
     """
@@ -69,7 +69,7 @@ class Slot:
     last: Signal
     flush: Signal
     first: Signal
-    full: Signal
+    over: Signal
     place: Signal
     values: Signal
 
@@ -119,7 +119,8 @@ def scan(
         taken: driven here: whether the head is taken.
     """
     done = Signal(name="done")
-    column = Signal(range(places), name="column", reset_less=True)
+    # One bit more than an address says that a line goes on behind the end of the memory.
+    column = Signal((places - 1).bit_length() + 1, name="column", reset_less=True)
     early = _positions(m, head, column, height, reset, moves, done, taken)
     slot = _later(m, early, moves)
     rows = _lines(m, slot, column, pixels, depth, moves)
@@ -143,8 +144,9 @@ def _positions(
     idle = Signal(name="idle", init=1)
     flush = Signal(name="flush")
     line_starts = Signal(name="line_starts", init=1)
+    line_goes_on = Signal(name="line_goes_on")
     # A slot that the first of the next line must not follow too closely, in the first step or the second.
-    young, marked = Signal(name="young"), Signal(name="marked")
+    young, marked, marks = Signal(name="young"), Signal(name="marked"), Signal(name="marks")
 
     # What is open when a frame begins is closed first: a frame by its repeated line, or by nothing, if it is
     # broken off inside a line; and a line that belongs to no frame.
@@ -159,14 +161,16 @@ def _positions(
         taken.eq(moves & takes),
         closes.eq(takes & last & last_line & (start | ~idle)),
         turns.eq(done | halts | (takes & last)),
+        marks.eq((step & (line_starts | line_goes_on | flush)) | halts),
     ]
     with m.If(moves):
         m.d.sync += [
             idle.eq(halts | closes | (idle & ~(takes & start))),
             flush.eq(closes | (halts & line_starts) | (flush & ~done)),
             line_starts.eq(turns | (line_starts & ~step)),
-            marked.eq((step & (line_starts | flush)) | halts),
-            young.eq((step & (line_starts | flush)) | halts | marked),
+            line_goes_on.eq(Mux(step, line_starts, line_goes_on)),
+            marked.eq(marks),
+            young.eq(marks | marked),
         ]
     with m.If(moves & step):
         m.d.sync += column.eq(column + 1)
@@ -185,7 +189,7 @@ def _positions(
     with m.If(idle):
         m.d.sync += [held.eq(height), line.eq(1)]
 
-    slot = _slot("early", len(column), len(values))
+    slot = _slot("early", len(column) - 1, len(values))
     with m.If(moves):
         m.d.sync += [
             slot.valid.eq(step),
@@ -193,8 +197,8 @@ def _positions(
             slot.last.eq(last),
             slot.flush.eq(flush),
             slot.first.eq(line_starts),
-            slot.full.eq(column.all()),
-            slot.place.eq(column),
+            slot.over.eq(column[-1]),
+            slot.place.eq(column[:-1]),
             slot.values.eq(values),
         ]
     return slot
@@ -210,7 +214,7 @@ def _slot(name: str, place_bits: int, value_bits: int) -> Slot:
         last=register("last"),
         flush=register("flush"),
         first=register("first"),
-        full=register("full"),
+        over=register("over"),
         place=register("place", place_bits),
         values=register("values", value_bits),
     )
@@ -246,14 +250,14 @@ def _lines(m: Module, slot: Slot, column: Signal, pixels: int, depth: int, moves
     m.d.comb += adds.eq(slot.valid & lined & ~slot.start & (slot.flush | (slot.last == ended)))
     with m.If(moves & slot.valid):
         m.d.sync += [
-            first_line.eq((slot.start | first_line) & ~slot.last & ~slot.full),
-            lined.eq(((slot.start | first_line) & slot.last) | (adds & ~(slot.flush & ended))),
+            first_line.eq((slot.start | first_line) & ~slot.last & ~slot.over),
+            lined.eq(((slot.start | first_line) & slot.last & ~slot.over) | (adds & ~(slot.flush & ended))),
             fresh.eq((slot.start | first_line) & slot.last),
         ]
 
     lines = Memory(
         shape=len(kept),
-        depth=1 << len(column),
+        depth=1 << len(slot.place),
         init=[],
         # Yosys takes 40 LUTs instead for lines of 640 pixels.
         attrs={"ram_style": "block"},
@@ -267,7 +271,7 @@ def _lines(m: Module, slot: Slot, column: Signal, pixels: int, depth: int, moves
     ]
     words = [Cat(see, value) for see, value in zip(seen, values, strict=True)]
     m.d.comb += [
-        read.addr.eq(column),
+        read.addr.eq(column[:-1]),
         read.en.eq(moves),
         write.addr.eq(slot.place),
         kept.eq(Cat(slot.last, *words)),

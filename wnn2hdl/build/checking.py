@@ -8,7 +8,7 @@ from typing import Any
 
 from wnn2hdl.build import remembered
 from wnn2hdl.build.design import Design
-from wnn2hdl.build.emission import SOBEL, Files
+from wnn2hdl.build.emission import SOBEL, Files, baseline_module
 from wnn2hdl.build.simulating import simulate_apart, simulate_parts
 from wnn2hdl.build.streaming import sample_frames
 from wnn2hdl.files import read_text
@@ -156,7 +156,7 @@ def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
     text = read_text(files.verilog, "Verilog")
     whole = () if design.video is None else (design.circuit.name,)
     jobs = {part: Job(text, design.module(part)) for part in (*design.parts, *whole)}
-    jobs[SOBEL] = Job(read_text(files.sobel, "Verilog"), design.module(SOBEL), baseline=True)
+    jobs[SOBEL] = Job(read_text(files.sobel, "Verilog"), baseline_module(design), baseline=True)
     return jobs
 
 

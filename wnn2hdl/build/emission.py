@@ -6,6 +6,7 @@ from pathlib import Path
 
 from hdl_templates import sobel
 from hdl_templates.hierarchy import Part
+from hdl_templates.sobel_video import SobelCore
 from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.streaming import sample_frames
@@ -81,6 +82,22 @@ def top_part(design: Design) -> Part:
     return elaborate.video_core(design.top, design.video, style=design.style)
 
 
+def baseline_module(design: Design) -> str:
+    """The module of the baseline: the operator's, or its video core's beside a core that sends edges."""
+    is_core = design.video is not None and design.video.has_edges
+    return design.module((SobelCore if is_core else sobel.Sobel).module_name)
+
+
+def _baseline(design: Design, threshold: int) -> tuple[Part, str]:
+    """The baseline, and what it is in words."""
+    parameters = sobel.Parameters(threshold)
+    operator = f"3x3 Sobel operator, |gx| + |gy| >= {threshold}"
+    if design.video is None or not design.video.has_edges:
+        return parameters.create(), f"Baseline: {operator}."
+    core = SobelCore(video=design.video, parameters=parameters)
+    return core, f"Baseline: video core of the {operator}, of grey pixels."
+
+
 def generators() -> dict[str, str]:
     """The versions of all that decides the bytes of the Verilog."""
     yosys = find_yosys()
@@ -102,8 +119,7 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
     files = Files.of(design, Path())
     part = top_part(design)
     prefix = f"{design.name}_"
-    baseline = sobel.Parameters(sobel_threshold).create()
-    title = f"Baseline: 3x3 Sobel operator, |gx| + |gy| >= {sobel_threshold}."
+    rival, title = _baseline(design, sobel_threshold)
     sources = [path.name for path in files.simulated]
     top = design.module(design.circuit.name)
     if design.video is None:
@@ -128,7 +144,7 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
     return {
         files.verilog.name: verilog(part, prefix=prefix, header=design.header),
         files.cells.name: cells_model(),
-        files.sobel.name: verilog(baseline, prefix=prefix, header=[title]),
+        files.sobel.name: verilog(rival, prefix=prefix, header=[title]),
         files.vectors.name: data,
         files.testbench.name: bench,
     }
