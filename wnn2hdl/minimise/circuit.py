@@ -9,6 +9,7 @@ from wnn2hdl.ir.nodes import Table
 from wnn2hdl.minimise.espresso import Minimised, espresso
 from wnn2hdl.minimise.portfolio import map_luts
 from wnn2hdl.progress import Progress, reported
+from wnn2hdl.tools import in_parallel
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ def minimise(
     progress: Progress,
     by: Callable[[TruthTable, int], MinimisedTable] = minimise_table,
 ) -> MinimisedCircuit:
-    """Minimise the tables of a circuit; what they give on cared-for inputs stays as it is.
+    """Minimise the tables of a circuit side by side; what they give on cared-for inputs stays as it is.
 
     Args:
         circuit: its tables are truth tables.
@@ -64,17 +65,19 @@ def minimise(
     Raises:
         CheckError: a minimised table differs from its truth table.
     """
-    covers: dict[str, Minimised] = {}
-    methods: dict[str, str] = {}
-    mapped: dict[int, Table] = {}
     tables = circuit.tables()
-    for name, table in reported(tables.items(), "minimising tables", len(tables), progress):
-        if not isinstance(table.function, TruthTable):
-            continue
-        minimised = by(table.function, effort)
-        covers[name] = minimised.cover
-        methods[name] = minimised.method
-        mapped[id(table)] = replace(table, function=minimised.network)
+    functions = {
+        name: table.function for name, table in tables.items() if isinstance(table.function, TruthTable)
+    }
+    names = list(functions)
+    results = in_parallel(lambda function: by(function, effort), functions.values())
+    found = {
+        names[position]: minimised
+        for position, minimised in reported(results, "minimising tables", len(names), progress)
+    }
+    covers = {name: found[name].cover for name in names}
+    methods = {name: found[name].method for name in names}
+    mapped = {id(tables[name]): replace(tables[name], function=found[name].network) for name in names}
 
     def change(definition: Circuit) -> Circuit:
         nodes = (mapped.get(id(node), node) if isinstance(node, Table) else node for node in definition.nodes)
