@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from wnn2hdl.ir import Thermometer
+from wnn2hdl.ir import FeatureEncoder, Thermometer, ThermometerBits
 from wnn2hdl.ir.features import FixedPoint
-from wnn2hdl.ir.models import LutGroupModel, LutLayer, SparseWisardModel
+from wnn2hdl.ir.models import BloomWisardModel, LutGroupModel, LutLayer, SparseWisardModel
 
 WORDS = FixedPoint(6, 3)
 
@@ -49,4 +49,20 @@ def wisard(seed: int, *, ties: str = "last") -> SparseWisardModel:
         rng.integers(1, 4, sum(map(len, stored))),
         bleaching=2,
         ties="last" if ties == "last" else "first",
+    )
+
+
+def bloom(
+    seed: int, *, encoder: FeatureEncoder | None = None, entries: int = 16, density: float = 0.6
+) -> BloomWisardModel:
+    """Three classes of two Bloom filters of twelve inputs with two hashes, over six thermometers."""
+    rng = np.random.default_rng(seed)
+    encoder = encoder or ThermometerBits(6, 4)
+    order = rng.permutation(24)
+    return BloomWisardModel(
+        encoder,
+        ("a", "b", "c"),
+        np.where(order < encoder.width, order, -1).reshape(2, 12).astype(np.int32),
+        rng.integers(0, entries, (2, 12)).astype(np.uint32),
+        rng.random((3, 2, entries)) < density,
     )

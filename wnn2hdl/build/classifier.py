@@ -13,7 +13,7 @@ from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.classifiers import PixelTable, familiar_colours, model_classifier
 from wnn2hdl.evaluation.rows import scaled
-from wnn2hdl.ir import Thermometer, WisardModel, Words, all_codes, bits_to_codes, picture_encoder
+from wnn2hdl.ir import FeatureEncoder, WisardModel, all_codes, bits_to_codes, picture_encoder
 from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.lower.deforestation import DECISION
 
@@ -74,6 +74,6 @@ def circuit_row_answers(design: Design, table: FeatureTable, raw: bool | None) -
     model = design.model
     assert not isinstance(model, LogicModel)
     encoder = model.encoder
-    assert isinstance(encoder, Thermometer | Words)
+    assert isinstance(encoder, FeatureEncoder)
     inputs = {"features": encoder.port_bits(scaled(model, table, raw))}
     return bits_to_codes(design.circuit.evaluate(inputs)["class_bits"]).astype(np.int64)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wnn2hdl.build.capacity import require_capacity
 from wnn2hdl.build.design import Design, Mode
 from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
@@ -32,6 +33,7 @@ from wnn2hdl.lower.table import care_set
 from wnn2hdl.lower.targets import Ingredients, Target, target_for
 from wnn2hdl.minimise import Minimised
 from wnn2hdl.minimise.circuit import minimise
+from wnn2hdl.minimise.estimate import estimated_luts
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import AlphaMeaning, Reading
 from wnn2hdl.schedule import Stages, for_clock, for_instances, for_stages
@@ -188,6 +190,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
     lowered = target.lower(Ingredients(model, edges, care, video))
+    require_capacity(estimated_luts(lowered), options.max_luts)
     minimised = minimise(lowered, options.effort, progress, by=minimise_once)
     design = Design(
         model,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.measures import confusion_of
-from wnn2hdl.ir import Thermometer, WisardModel, Words
+from wnn2hdl.ir import FeatureEncoder, WisardModel
 from wnn2hdl.ir.models import AnyModel, ClassifierModel, LogicModel, load_model
 
 VectorClassifier = WisardModel | ClassifierModel
@@ -24,7 +24,7 @@ def load_vector_classifier(path: Path) -> VectorClassifier:
 
 def require_vector_classifier(model: AnyModel, path: Path | str) -> VectorClassifier:
     """A model that classifies feature vectors, as it is given; raises InputError for all others."""
-    if isinstance(model, LogicModel) or not isinstance(model.encoder, Thermometer | Words):
+    if isinstance(model, LogicModel) or not isinstance(model.encoder, FeatureEncoder):
         raise InputError(
             "the model does not classify feature vectors",
             value=f"{path} (kind {model.kind})",
@@ -99,7 +99,7 @@ def feature_bits(model: VectorClassifier, features: NDArray[np.float64]) -> NDAr
         InputError: there are more or fewer features than the model reads, or they are none that it can read.
     """
     encoder = model.encoder
-    assert isinstance(encoder, Thermometer | Words)
+    assert isinstance(encoder, FeatureEncoder)
     if features.shape[1] != encoder.features:
         raise InputError(
             "the table has another number of features than the model reads",

@@ -10,7 +10,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.importers.arrays import NUMPY, array_of
 from wnn2hdl.importers.base import Importer, ImportOptions, Source, damage_reported
 from wnn2hdl.importers.pickles import Record, StandIn, read_pickle, record
-from wnn2hdl.ir.features import Words
+from wnn2hdl.ir.features import ThermometerBits
 from wnn2hdl.ir.models import BloomWisardModel
 from wnn2hdl.ir.models.base import ZERO
 
@@ -50,7 +50,7 @@ def read(source: Source, _: ImportOptions) -> BloomWisardModel:
         hashes = _hashes(array_of(info["hash_values"], "hash_values"), entries)
         contents = np.stack([_contents(each, len(mapping), entries, hashes) for each in discriminators])
         return BloomWisardModel(
-            encoder=Words(width),
+            encoder=ThermometerBits(int(info["num_inputs"]), int(info["bits_per_input"])),
             classes=tuple(str(index) for index in range(len(contents))),
             mapping=mapping,
             hashes=hashes,

@@ -4,7 +4,7 @@ from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_t
 from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
 from wnn2hdl.ir.encoder import Encoder, Neighbourhood, PictureEncoder, Tap
 from wnn2hdl.ir.equation import Equation, equation
-from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
+from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, ThermometerBits, Words
 from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
 from wnn2hdl.ir.network import (
     CONSTANTS,
@@ -56,6 +56,7 @@ __all__ = [
     "Tap",
     "Term",
     "Thermometer",
+    "ThermometerBits",
     "TruthTable",
     "VideoFormat",
     "WisardModel",

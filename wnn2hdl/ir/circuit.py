@@ -38,7 +38,8 @@ class Circuit:
         outputs: the output ports and the words that drive them.
         care: the values of words that matter; a word that is not named here is cared for altogether.
         carries: for signals of the model by number, the output bit or the constant that they are here: for
-            bits of the encoder, or for tables of the last layer. To a proof this is a hint, which it proves.
+            bits of the encoder, or for tables of the last layer; the number of an exclusive or of the
+            encoder's bits is their mask. To a proof this is a hint, which it proves.
     """
 
     name: str

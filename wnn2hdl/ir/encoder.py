@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
-from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, Words
+from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, ThermometerBits, Words
 from wnn2hdl.ir.pixel_bits import BitSelect
 from wnn2hdl.ir.relational import PixelEncoder, Relational
 from wnn2hdl.ir.tables import pack_contents, unpack_contents
@@ -142,6 +142,8 @@ def encoder_from_json(data: dict[str, Any]) -> Encoder:
         return Neighbourhood(data["size"], tuple(taps))
     if data["kind"] == Words.kind:
         return Words(data["features"], data["word_bits"])
+    if data["kind"] == ThermometerBits.kind:
+        return ThermometerBits(data["thermometers"], data["levels"])
     thresholds = tuple(tuple(float(x) for x in levels) for levels in data["thresholds"])
     words = FixedPoint.from_json(data["input"]) if "input" in data else None
     return Thermometer(thresholds, data["strict"], words)

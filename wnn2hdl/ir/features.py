@@ -275,7 +275,77 @@ class Words:
         return {"kind": self.kind, "features": self.features, "word_bits": self.word_bits}
 
 
-FeatureEncoder = Thermometer | Words
+@dataclass(frozen=True)
+class ThermometerBits:
+    """Bits of thermometers that stand outside of the model: pure wiring, no logic.
+
+    Bit ``t * thermometers + i`` says whether number ``i`` reaches its threshold ``t``. The thresholds rise,
+    so a set bit of a thermometer is preceded by set bits only; nothing else is an input.
+
+    Attributes:
+        thermometers: numbers that were compared.
+        levels: thresholds of each.
+    """
+
+    kind: ClassVar[str] = "thermometer-bits"
+    thermometers: int
+    levels: int
+
+    def __post_init__(self) -> None:
+        if self.thermometers < 1 or self.levels < 1:
+            raise ValueError(f"no thermometers: {self.thermometers} of {self.levels} bits")
+
+    @property
+    def features(self) -> int:
+        """Numbers in a feature vector: a bit is one."""
+        return self.width
+
+    @property
+    def width(self) -> int:
+        """Bits of a code."""
+        return self.thermometers * self.levels
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each code bit: ``x3_t0`` is number 3 against its first threshold."""
+        return tuple(f"x{f}_t{t}" for t in range(self.levels) for f in range(self.thermometers))
+
+    @property
+    def falling(self) -> tuple[tuple[int, ...], ...]:
+        """The positions of each thermometer's bits, the lowest threshold first."""
+        return tuple(tuple(range(f, self.width, self.thermometers)) for f in range(self.thermometers))
+
+    def bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """The bits that were given.
+
+        Args:
+            features: 0 and 1, or bool, ``[samples, width]``.
+
+        Returns:
+            bool ``[samples, width]``.
+
+        Raises:
+            ValueError: other numbers, or a set bit after one that is not set.
+        """
+        array = _matrix(features, self.width, None)
+        flags: NDArray[np.bool_] = array == 1
+        if not (flags | (array == 0)).all():
+            raise ValueError("thermometer bits must be 0 or 1")
+        levels = flags.reshape(len(flags), self.levels, self.thermometers)
+        if (levels[:, 1:] & ~levels[:, :-1]).any():
+            raise ValueError("a number reaches a threshold, but not the one before")
+        return flags
+
+    def port_bits(self, features: ArrayLike) -> NDArray[np.bool_]:
+        """What hardware reads, which is `bits`."""
+        return self.bits(features)
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object, read back by `encoder_from_json`."""
+        return {"kind": self.kind, "thermometers": self.thermometers, "levels": self.levels}
+
+
+FeatureEncoder = Thermometer | Words | ThermometerBits
 
 
 def _matrix(values: ArrayLike, features: int, dtype: type[np.generic] | None) -> NDArray[Any]:

@@ -9,7 +9,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, TruthTable
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.encoder import Encoder
-from wnn2hdl.ir.features import FixedPoint, Words
+from wnn2hdl.ir.features import FixedPoint, ThermometerBits, Words
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.lower.thresholds import compare
@@ -21,7 +21,7 @@ def features_port(encoder: Encoder) -> Port:
     Raises:
         InputError: the encoder reads pixels, or numbers of no stated format.
     """
-    if isinstance(encoder, Words):
+    if isinstance(encoder, Words | ThermometerBits):
         return Port("features", encoder.width)
     if isinstance(encoder, Thermometer):
         return Port("features", encoder.features * _format(encoder).bits)

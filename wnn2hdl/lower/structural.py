@@ -1,19 +1,27 @@
 """Networks of any number of inputs, lowered node by node: encoder, tables, votes, winner."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import MAX_TABLE_INPUTS, Thermometer, TruthTable, WisardModel
+from wnn2hdl.ir import MAX_TABLE_INPUTS, Thermometer, ThermometerBits, TruthTable, WisardModel
 from wnn2hdl.ir.care import CareSet, Everything, Implied
 from wnn2hdl.ir.circuit import Care, Circuit, Instance
 from wnn2hdl.ir.encoder import Encoder
-from wnn2hdl.ir.models import LutGroupModel, SparseWisardModel, VotingModel
+from wnn2hdl.ir.models import (
+    BloomWisardModel,
+    LutGroupModel,
+    NetworkModel,
+    SparseWisardModel,
+    VotingModel,
+)
 from wnn2hdl.ir.models.base import ZERO
 from wnn2hdl.ir.nodes import ArgMax, Sum, Table
 from wnn2hdl.ir.wires import Port, Slice
+from wnn2hdl.lower.bloom import FORMS, filter_tables, hash_circuit, positions
 from wnn2hdl.lower.encoder import encoder_circuit, features_port
 from wnn2hdl.lower.pieces import divided
 from wnn2hdl.minimise.sharing import share
@@ -36,7 +44,7 @@ class Layer:
     contents: NDArray[np.bool_]
 
 
-def network(model: VotingModel) -> Circuit:
+def network(model: NetworkModel) -> Circuit:
     """The whole network: ``features`` to ``class_bits``, the index of the class in binary.
 
     Tables are shared and lose what does not matter first, so that the encoder makes only bits that are read.
@@ -45,20 +53,32 @@ def network(model: VotingModel) -> Circuit:
         InputError: as `core`, or the encoder reads numbers of no stated format.
     """
     features = features_port(model.encoder)
-    layers, owners = _layers(model)
-    shared = share(_core(model, layers, owners), implied(model.encoder), known_bits(model.encoder))
-    voters = [_name(len(layers) - 1, index) for index in range(len(owners))]
+    known = known_bits(model.encoder)
+    forms: tuple[int, ...] = ()
+    if isinstance(model, BloomWisardModel):
+        filters = filter_tables(model, implied(model.encoder), known)
+        forms, voters = filters.forms, list(filters.voters)
+        whole = _voting(model, filters.care, filters.tables, voters, _owners(model))
+        shared = share(whole, filters.care, {})
+    else:
+        layers, owners = _layers(model)
+        voters = _voters(layers)
+        shared = share(_core(model, layers, owners), implied(model.encoder), known)
     carried = {index: shared.found.get(voter, Slice(voter)) for index, voter in enumerate(voters)}
-    encoder = encoder_circuit(model.encoder, shared.read)
-    first = Instance("encode", encoder, {"features": features.word})
-    decide = divided(shared.circuit, carried)
-    second = Instance("decide", decide, {"bits": (Slice("encode.bits", 0, len(shared.read)),)})
-    ((net, width),) = second.drives.items()
+    read = tuple(forms[place] for place in shared.read) if forms else tuple(1 << bit for bit in shared.read)
+    encoded = positions(read)
+    nodes = [Instance("encode", encoder_circuit(model.encoder, encoded), {"features": features.word})]
+    word = (Slice("encode.bits", 0, len(encoded)),)
+    if any(mask.bit_count() > 1 for mask in read):
+        nodes.append(Instance("hash", hash_circuit(encoded, read), {"bits": word}))
+        word = (Slice(f"hash.{FORMS}", 0, len(read)),)
+    nodes.append(Instance("decide", divided(shared.circuit, carried), {"bits": word}))
+    ((net, width),) = nodes[-1].drives.items()
     return Circuit(
         NETWORK,
         f"Network of {len(model.classes)} classes.",
         (features,),
-        (first, second),
+        tuple(nodes),
         {"class_bits": (Slice(net, 0, width),)},
     )
 
@@ -74,9 +94,8 @@ def core(model: VotingModel) -> Circuit:
 
 
 def _core(model: VotingModel, layers: list[Layer], owners: NDArray[np.integer]) -> Circuit:
-    bits = Port("bits", model.encoder.width)
-    nets = [Slice("bits", position) for position in range(bits.width)]
-    nodes: list[Table | Sum | ArgMax] = []
+    nets = [Slice("bits", position) for position in range(model.encoder.width)]
+    nodes: list[Table] = []
     for number, layer in enumerate(layers):
         tables = []
         for index, (mapping, contents) in enumerate(zip(layer.mapping, layer.contents, strict=True)):
@@ -86,9 +105,29 @@ def _core(model: VotingModel, layers: list[Layer], owners: NDArray[np.integer]) 
             tables.append(Table(_name(number, index), tuple(nets[position] for position in read), function))
         nodes += tables
         nets = [Slice(table.name) for table in tables]
+    return _voting(model, implied(model.encoder), nodes, _voters(layers), owners)
+
+
+def _voting(
+    model: NetworkModel,
+    care: CareSet,
+    tables: Sequence[Table],
+    voters: Sequence[str],
+    owners: NDArray[np.integer],
+) -> Circuit:
+    """The circuit `CORE` of some tables over ``bits``.
+
+    Args:
+        model: says which classes there are, and which of several equal ones wins.
+        care: what can occur on ``bits``.
+        tables: in topological order.
+        voters: the nets that vote.
+        owners: the class that each votes for.
+    """
+    bits = Port("bits", care.width)
     votes = []
     for owner in range(len(model.classes)):
-        word = tuple(net for net, voted in zip(nets, owners, strict=True) if voted == owner)
+        word = tuple(Slice(net) for net, voted in zip(voters, owners, strict=True) if voted == owner)
         if not word:
             raise InputError(
                 "a class has no table that votes for it", value=model.classes[owner], hint="train it again"
@@ -101,10 +140,19 @@ def _core(model: VotingModel, layers: list[Layer], owners: NDArray[np.integer]) 
         CORE,
         f"Tables, votes and winner of {len(model.classes)} classes.",
         (bits,),
-        (*nodes, *votes, winner),
+        (*tables, *votes, winner),
         {"class_bits": (Slice("winner", 0, winner.drives["winner"]),)},
-        (Care(bits.word, implied(model.encoder)),),
+        (Care(bits.word, care),),
     )
+
+
+def _owners(model: BloomWisardModel) -> NDArray[np.int64]:
+    """The class of each filter, class by class."""
+    return np.repeat(np.arange(len(model.classes)), len(model.mapping))
+
+
+def _voters(layers: Sequence[Layer]) -> list[str]:
+    return [_name(len(layers) - 1, index) for index in range(len(layers[-1].contents))]
 
 
 def _name(layer: int, index: int) -> str:
@@ -113,6 +161,8 @@ def _name(layer: int, index: int) -> str:
 
 def implied(encoder: Encoder) -> CareSet:
     """What can occur on an encoder's bits at all: the bits of a thermometer fall."""
+    if isinstance(encoder, ThermometerBits):
+        return Implied(encoder.width, encoder.falling)
     if not isinstance(encoder, Thermometer):
         return Everything(encoder.width)
     groups, start = [], 0
@@ -156,7 +206,8 @@ def _layers(model: VotingModel) -> tuple[list[Layer], NDArray[np.integer]]:
     raise InputError(
         "the bleaching threshold is found again for each sample, which is not a circuit of tables",
         value=f"confidence {model.bleaching.confidence}",
-        hint="import the model with a fixed threshold: --bleach",
+        hint="import it with a fixed one, which makes another classifier: --bleach N; "
+        "import --table says which N is most often right",
     )
 
 

@@ -7,9 +7,9 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
     WINDOW_BITS,
     EdgeFilter,
+    FeatureEncoder,
     Neighbourhood,
     PixelEncoder,
-    Thermometer,
     VideoFormat,
     WisardModel,
     Words,
@@ -17,7 +17,7 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel, TableSumModel, VotingModel
+from wnn2hdl.ir.models import AnyModel, NetworkModel, TableSumModel
 from wnn2hdl.ir.video import MAX_CLASSES
 from wnn2hdl.lower import deforestation, structural, sums
 
@@ -99,7 +99,7 @@ def _neighbourhood(of: Ingredients) -> Circuit:
 def _network(of: Ingredients) -> Circuit:
     if isinstance(of.model, TableSumModel):
         return sums.network(of.model)
-    assert isinstance(of.model, VotingModel)
+    assert isinstance(of.model, NetworkModel)
     return structural.network(of.model)
 
 
@@ -120,7 +120,7 @@ def _reads_neighbours(model: AnyModel) -> bool:
 def _is_network(model: AnyModel) -> bool:
     if isinstance(model, TableSumModel):
         return isinstance(model.encoder, Words)
-    return isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words)
+    return isinstance(model, NetworkModel) and isinstance(model.encoder, FeatureEncoder)
 
 
 def _reads(model: AnyModel) -> str:

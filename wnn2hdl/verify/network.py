@@ -1,23 +1,25 @@
 """What a whole network has to compute: encoder, tables, votes and winner, as the model defines them."""
 
+from itertools import pairwise
+
 import numpy as np
 
-from wnn2hdl.ir import Thermometer, codes_to_bits
+from wnn2hdl.ir import Thermometer, ThermometerBits, codes_to_bits
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.encoder import Encoder
-from wnn2hdl.ir.models import VotingModel
+from wnn2hdl.ir.models import NetworkModel
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify.network_lines import encoder_lines, features_width, owners_of, positions_read, table_lines
 from wnn2hdl.verify.network_pieces import Pieces
 from wnn2hdl.verify.reference import class_bits, module, plain_sum, winning
-from wnn2hdl.verify.specification import Claim, Samples, Specification
+from wnn2hdl.verify.specification import Claim, Mask, Samples, Specification
 
 PART = "network"
 SAMPLES = 10_240
 """Feature vectors that a network is simulated on: random ones, and ones beside thresholds."""
 
 
-def network_specification(model: VotingModel, circuit: Circuit | None = None) -> Specification:
+def network_specification(model: NetworkModel, circuit: Circuit | None = None) -> Specification:
     """The claim of a model whose tables vote for classes.
 
     Args:
@@ -34,6 +36,10 @@ def network_specification(model: VotingModel, circuit: Circuit | None = None) ->
     def answers(inputs: Samples) -> dict[str, Bits]:
         return {"class_bits": codes_to_bits(model.evaluate(encoder_bits(encoder, inputs["features"])), width)}
 
+    masks, care = {}, ""
+    if isinstance(encoder, ThermometerBits):
+        masks = {"class_bits": Mask(f"proof__care_{PART}", "features")}
+        care = module(masks["class_bits"].module, {"features": encoder.width}, {"cared": 1}, _falls(encoder))
     claim = Claim(
         PART,
         {"features": features_width(encoder)},
@@ -41,12 +47,13 @@ def network_specification(model: VotingModel, circuit: Circuit | None = None) ->
         f"proof__{PART}",
         answers,
         lambda: {"features": stimulus(encoder)},
+        masks=masks,
     )
     reference = module(claim.module, claim.inputs, claim.outputs, _lines(model))
     if circuit is None:
-        return Specification({PART: claim}, reference, "")
+        return Specification({PART: claim}, reference, care)
     pieces = Pieces(model, circuit)
-    return Specification({PART: claim}, reference + pieces.reference, "", pieces.composition)
+    return Specification({PART: claim}, reference + pieces.reference, care, pieces.composition)
 
 
 def encoder_bits(encoder: Encoder, features: Bits) -> Bits:
@@ -63,8 +70,14 @@ def encoder_bits(encoder: Encoder, features: Bits) -> Bits:
 
 
 def stimulus(encoder: Encoder) -> Bits:
-    """Values of ``features``: half random, half with every feature at one of its thresholds or just below."""
+    """Values of ``features``: half random, half with every feature at one of its thresholds or just below.
+
+    Of thermometer bits all are random, but occur together.
+    """
     rng = np.random.default_rng(0)
+    if isinstance(encoder, ThermometerBits):
+        reached = rng.integers(0, encoder.levels + 1, (SAMPLES, encoder.thermometers))
+        return np.concatenate([reached > level for level in range(encoder.levels)], axis=1)
     if not isinstance(encoder, Thermometer):
         return rng.random((SAMPLES, features_width(encoder))) < 0.5
     form = encoder.input
@@ -77,7 +90,7 @@ def stimulus(encoder: Encoder) -> Bits:
     return codes_to_bits(words & (1 << form.bits) - 1, form.bits).reshape(SAMPLES, -1)
 
 
-def _lines(model: VotingModel) -> list[str]:
+def _lines(model: NetworkModel) -> list[str]:
     """Statements of the reference module."""
     lines, signals = encoder_lines(model.encoder, positions_read(model))
     made, fires = table_lines(model, signals)
@@ -90,3 +103,13 @@ def _lines(model: VotingModel) -> list[str]:
     for number, word in enumerate(votes):
         lines.append(f"  wire [{width - 1}:0] response_{number} = {plain_sum(word, width)};")
     return [*lines, *winning(len(votes), width, ties=model.ties)]
+
+
+def _falls(encoder: ThermometerBits) -> list[str]:
+    """Statements of the module that knows which bits can occur together."""
+    lines = ["  wire hole_0 = 1'b0;"]
+    for bits in encoder.falling:
+        for before, after in pairwise(bits):
+            last = len(lines) - 1
+            lines.append(f"  wire hole_{last + 1} = hole_{last} | features[{after}] & ~features[{before}];")
+    return [*lines, f"  assign cared = ~hole_{len(lines) - 1};"]

@@ -1,6 +1,6 @@
 """Reference Verilog of the parts of a network, straight from the model: thresholds, tables, votes."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, WisardModel
 from wnn2hdl.ir.encoder import Encoder
-from wnn2hdl.ir.features import Words
-from wnn2hdl.ir.models import LutGroupModel, SparseWisardModel, VotingModel
+from wnn2hdl.ir.features import ThermometerBits, Words
+from wnn2hdl.ir.models import BloomWisardModel, LutGroupModel, NetworkModel, SparseWisardModel
 from wnn2hdl.ir.models.base import ZERO
+from wnn2hdl.verify.bloom_lines import filter_lines
 from wnn2hdl.verify.reference import lookup
 
 
@@ -18,7 +19,7 @@ def features_width(encoder: Encoder) -> int:
     """Bits of the port ``features``."""
     if isinstance(encoder, Thermometer) and encoder.input is not None:
         return encoder.features * encoder.input.bits
-    if isinstance(encoder, Words):
+    if isinstance(encoder, Words | ThermometerBits):
         return encoder.width
     raise InputError(
         "the model states no fixed-point format of its features",
@@ -27,7 +28,7 @@ def features_width(encoder: Encoder) -> int:
     )
 
 
-def positions_read(model: VotingModel) -> set[int]:
+def positions_read(model: NetworkModel) -> set[int]:
     """The encoder's bits that the model's tables read."""
     mapping = model.layers[0].mapping if isinstance(model, LutGroupModel) else model.mapping
     return {int(position) for position in np.unique(mapping) if position != ZERO}
@@ -61,15 +62,27 @@ def encoder_lines(encoder: Encoder, read: Container[int]) -> tuple[list[str], li
     return lines, signals
 
 
-def owners_of(model: VotingModel) -> list[int]:
+def owners_of(model: NetworkModel) -> list[int]:
     """The class that each table of the last layer votes for."""
     if isinstance(model, LutGroupModel):
         return [int(owner) for owner in model.groups]
+    if isinstance(model, BloomWisardModel):
+        return np.repeat(np.arange(len(model.classes)), len(model.mapping)).tolist()
     return np.repeat(np.arange(len(model.classes)), model.rams).tolist()
 
 
-def table_lines(model: VotingModel, signals: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Lines of all tables over the encoder's bits, and the output of each table of the last layer."""
+def table_lines(
+    model: NetworkModel, signals: Sequence[str], forms: Mapping[int, str] | None = None
+) -> tuple[list[str], list[str]]:
+    """Lines of all tables over the encoder's bits, and the output of each table of the last layer.
+
+    Args:
+        model: the model.
+        signals: the encoder's bits.
+        forms: of Bloom filters, see `wnn2hdl.verify.bloom_lines.filter_lines`.
+    """
+    if isinstance(model, BloomWisardModel):
+        return filter_lines(model, signals, forms or {})
     lines: list[str] = []
     if isinstance(model, LutGroupModel):
         for number, layer in enumerate(model.layers):

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import EdgeFilter, Neighbourhood, Thermometer, WisardModel, Words
+from wnn2hdl.ir import EdgeFilter, FeatureEncoder, Neighbourhood, WisardModel, Words
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel, TableSumModel, VotingModel
+from wnn2hdl.ir.models import AnyModel, NetworkModel, TableSumModel
 from wnn2hdl.verify.block import block_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
 from wnn2hdl.verify.network import network_specification
@@ -33,7 +33,7 @@ def specify(
         InputError: the model reads no pixels, or a care set is empty.
         ValueError: the circuit is not made of the pieces of the model's.
     """
-    if isinstance(model, VotingModel) and isinstance(model.encoder, Thermometer | Words):
+    if isinstance(model, NetworkModel) and isinstance(model.encoder, FeatureEncoder):
         return network_specification(model, circuit)
     if isinstance(model, TableSumModel) and isinstance(model.encoder, Words):
         return sums_specification(model)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import Encoder, FixedPoint, Thermometer, Words
+from wnn2hdl.ir import Encoder, FixedPoint, Thermometer, ThermometerBits, Words
 from wnn2hdl.ir.encoder import encoder_from_json
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -21,6 +21,7 @@ thermometers = st.builds(
     st.none() | formats,
 )
 words = st.builds(Words, st.integers(1, 9), st.integers(1, 16))
+bits = st.builds(ThermometerBits, st.integers(1, 9), st.integers(1, 9))
 
 Q3_12 = FixedPoint(bits=16, fraction=12)
 
@@ -157,3 +158,30 @@ def test_a_port_takes_the_words_side_by_side() -> None:
     assert Words(2, 2).port_bits([[1, 2]]).astype(int).tolist() == [[1, 0, 0, 1]]
     with pytest.raises(ValueError, match="reads real numbers, not words"):
         Thermometer(((0.5,),)).port_bits([[1.0]])
+
+
+def test_bits_of_thermometers_stand_threshold_by_threshold() -> None:
+    encoder = ThermometerBits(2, 3)
+    assert encoder.names == ("x0_t0", "x1_t0", "x0_t1", "x1_t1", "x0_t2", "x1_t2")
+    assert encoder.falling == ((0, 2, 4), (1, 3, 5))
+    given = [[1, 1, 1, 0, 0, 0], [0, 0, 0, 0, 0, 0], [1, 1, 1, 1, 1, 1]]
+    assert encoder.bits(given).tolist() == encoder.port_bits(given).tolist() == np.array(given, bool).tolist()
+
+
+@pytest.mark.parametrize(
+    ("given", "complaint"),
+    [
+        ([[0, 1, 1, 0, 0, 0]], "reaches a threshold, but not the one before"),
+        ([[1, 2, 0, 0, 0, 0]], "must be 0 or 1"),
+        ([[1, float("nan"), 0, 0, 0, 0]], "must be 0 or 1"),
+        ([[1, 1, 0]], "features must be"),
+    ],
+)
+def test_nothing_but_thermometer_bits_is_read(given: list[list[float]], complaint: str) -> None:
+    with pytest.raises(ValueError, match=complaint):
+        ThermometerBits(2, 3).bits(given)
+
+
+def test_there_is_no_thermometer_of_no_bits() -> None:
+    with pytest.raises(ValueError, match="no thermometers: 2 of 0 bits"):
+        ThermometerBits(2, 0)

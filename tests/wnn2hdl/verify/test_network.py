@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.small_networks import WORDS, encoder_of, lut_network, wisard
+from tests.small_networks import WORDS, bloom, encoder_of, lut_network, thermometer, wisard
 from wnn2hdl.elaborate import component
 from wnn2hdl.emit import verilog
-from wnn2hdl.ir.models import VotingModel
+from wnn2hdl.ir.models import NetworkModel
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.lower.structural import network
 from wnn2hdl.minimise.circuit import minimise
@@ -20,13 +20,22 @@ def silent(step: str, done: int, total: int) -> None:
     pass
 
 
-def emitted(model: VotingModel) -> str:
+def emitted(model: NetworkModel) -> str:
     circuit = minimise(network(model), 0, silent).circuit
     return verilog(component(circuit, style="cells"), prefix="x_", header=[])
 
 
-@pytest.mark.parametrize("model", [lut_network(3), wisard(3), wisard(4, ties="first")])
-def test_the_reference_is_the_model(model: VotingModel) -> None:
+@pytest.mark.parametrize(
+    "model",
+    [
+        lut_network(3),
+        wisard(3),
+        wisard(4, ties="first"),
+        bloom(3),
+        bloom(4, encoder=thermometer(4, features=6)),
+    ],
+)
+def test_the_reference_is_the_model(model: NetworkModel) -> None:
     specification = network_specification(model)
     claim = specification.claims["network"]
     assert claim.stimulus is not None

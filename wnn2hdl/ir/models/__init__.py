@@ -17,6 +17,9 @@ AnyModel = WisardModel | SparseWisardModel | BloomWisardModel | LutGroupModel | 
 VotingModel = WisardModel | SparseWisardModel | LutGroupModel
 """Models whose last tables vote for classes."""
 
+NetworkModel = VotingModel | BloomWisardModel
+"""Models that become a network: an encoder, what votes, a sum for each class, a winner."""
+
 KINDS: dict[str, type[AnyModel]] = {
     model.kind: model
     for model in (
@@ -55,6 +58,7 @@ __all__ = [
     "LutGroupModel",
     "LutLayer",
     "Model",
+    "NetworkModel",
     "SparseWisardModel",
     "SumLayer",
     "TableSumModel",
