@@ -6,14 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.small_networks import lut_network
+from tests.small_networks import bloom, lut_network
 from tests.small_sums import sum_network
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.planning import CompileOptions, with_input
 from wnn2hdl.build.verification import verify_build
+from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
+from wnn2hdl.importers import ImportOptions, Source
+from wnn2hdl.importers.bthowen import read
+from wnn2hdl.ir import ThermometerBits
 from wnn2hdl.ir.features import FixedPoint
-from wnn2hdl.ir.models import LogicModel, LutGroupModel
+from wnn2hdl.ir.models import BloomWisardModel, LogicModel, LutGroupModel
+from wnn2hdl.training.bthowen import with_thresholds
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -32,6 +37,49 @@ def test_a_network_is_built_proved_and_verified(tmp_path: Path) -> None:
     assert report["options"]["simulated_vectors"] == {"network": 10_240}
     assert (folder / "net.v").read_text().count("module net_") >= 3
     assert verify_build(folder, silent)[0] == []
+
+
+@pytest.mark.slow
+def test_bloom_filters_are_built_proved_and_verified(tmp_path: Path) -> None:
+    folder = tmp_path / "net"
+    built = compile_model(bloom(1), folder, CompileOptions(effort=0), silent)
+    assert built.failure is None
+    assert set(built.report["parts"]) == {
+        *("encoder", "hashes", "tables", "sum_0", "winner", "core", "network", "sobel")
+    }
+    assert built.report["proof"]["status"] == "proved"
+    assert verify_build(folder, silent)[0] == []
+
+
+@pytest.mark.slow
+def test_a_pipeline_of_bloom_filters_is_proved(tmp_path: Path) -> None:
+    built = compile_model(bloom(1), tmp_path / "net", CompileOptions(effort=0, stages=2), silent)
+    assert (built.failure, built.report["proof"]["status"]) == (None, "proved")
+
+
+def test_a_model_too_large_for_the_device_is_refused_before_work(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    contents = rng.random((20, 20, 4096)) < 0.5
+    mapping = np.arange(480, dtype=np.int32).reshape(20, 24)
+    hashes = rng.integers(0, 4096, (2, 24)).astype(np.uint32)
+    classes = tuple("abcdefghijklmnopqrst")
+    model = BloomWisardModel(ThermometerBits(480, 1), classes, mapping, hashes, contents)
+    with pytest.raises(InputError, match=r"about 5\d,\d+ of the 53,200 of an xc7z020.*--max-luts"):
+        compile_model(model, tmp_path / "net", CompileOptions(), silent)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.realdata
+@pytest.mark.slow
+def test_a_published_model_is_proved_with_its_thresholds(realdata: Path, tmp_path: Path) -> None:
+    source = Source(realdata / "bthowen" / "iris.pickle.lzma")
+    rows = realdata / "uci" / "iris.csv"
+    model = with_thresholds(read(source, ImportOptions()), read_table(rows, "label"))
+    options = CompileOptions(effort=0, input="UQ3.5", test_table=rows, label="label")
+    built = compile_model(model, tmp_path / "net", options, silent)
+    assert (built.failure, built.report["proof"]["status"]) == (None, "proved")
+    assert built.report["parts"]["network"]["luts"] < 57
+    assert built.report["accuracy"] > 0.97
 
 
 @pytest.mark.slow
