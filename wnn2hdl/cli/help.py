@@ -1,5 +1,6 @@
 """A command whose help groups its options, and that suggests an option for one it does not have."""
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -7,6 +8,35 @@ import click
 
 Sections = Mapping[str, Sequence[str]]
 """Headings of a command's help, each with its options by their long names, as in ``--seed``."""
+
+
+SCREEN = 45
+"""Lines that a terminal shows at once, about."""
+
+MORE = "More, explained by --help-all"
+
+_NAMES_LEFT = 24
+"""Columns left of the names of options in that section."""
+
+_EVERYTHING = "wnn2hdl.help_all"
+"""In a context's `meta` while all options are to be explained."""
+
+
+def _explain_all(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    if asked and not context.resilient_parsing:
+        context.meta[_EVERYTHING] = True
+        click.echo(context.get_help(), color=context.color)
+        context.exit()
+
+
+_help_all = click.Option(
+    ["--help-all"],
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_explain_all,
+    help="Show this message with all options explained.",
+)
 
 
 class Command(click.Command):
@@ -20,17 +50,37 @@ class Command(click.Command):
         super().__init__(*args, **kwargs)
         self.sections = sections or {}
 
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """The parameters; a command with sections has one that explains what does not fit a screen."""
+        parameters = super().get_params(ctx)
+        return [*parameters, _help_all] if self.sections else parameters
+
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options under their headings."""
+        """Write the options under their headings.
+
+        From the last section on, those that would not fit a screen are listed by their names alone.
+        """
         rows: dict[str, list[tuple[str, str]]] = {heading: [] for heading in (*self.sections, "Options")}
+        names: dict[str, list[str]] = {heading: [] for heading in rows}
         for parameter in self.get_params(ctx):
             record = parameter.get_help_record(ctx)
             if record is not None and isinstance(parameter, click.Option):
-                rows[self._heading(parameter)].append(record)
-        for heading, records in rows.items():
-            if records:
-                with formatter.section(heading):
-                    formatter.write_dl(records)
+                heading = self._heading(parameter)
+                rows[heading].append(record)
+                names[heading].append(max(parameter.opts, key=len))
+        shown = {
+            heading: _section(heading, records, formatter) for heading, records in rows.items() if records
+        }
+        named: list[tuple[str, str]] = []
+        before = formatter.getvalue()
+        for heading in reversed(list(self.sections)[1:]):
+            lines = "".join([before, *shown.values(), _section(MORE, named, formatter)]).count("\n")
+            if lines <= SCREEN or ctx.meta.get(_EVERYTHING):
+                break
+            del shown[heading]
+            named.insert(0, (heading, _unbroken(names[heading], formatter.width)))
+        options = shown.pop("Options")
+        formatter.write("".join([*shown.values(), _section(MORE, named, formatter), options]))
 
     def _heading(self, parameter: click.Parameter) -> str:
         return next(
@@ -49,6 +99,22 @@ class Command(click.Command):
                 raise
             message = f"No such option '{error.option_name}'; did you mean {' or '.join(sorted(alike))}?"
             raise click.UsageError(message, ctx) from error
+
+
+def _section(heading: str, rows: Sequence[tuple[str, str]], formatter: click.HelpFormatter) -> str:
+    """A section as ``formatter`` would write it; nothing if it has no rows."""
+    if not rows:
+        return ""
+    apart = click.HelpFormatter(formatter.indent_increment, formatter.width)
+    with apart.section(heading):
+        apart.write_dl(rows)
+    return f"\n{apart.getvalue()}"
+
+
+def _unbroken(names: Sequence[str], width: int) -> str:
+    """Names in lines that click leaves as they are: it would break them at hyphens."""
+    lines = textwrap.wrap(", ".join(names), max(width - _NAMES_LEFT, 20), break_on_hyphens=False)
+    return "\n".join(["\b", *lines])
 
 
 def _words(option: str) -> set[str]:

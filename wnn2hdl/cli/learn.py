@@ -104,9 +104,9 @@ DISCRIMINATORS = ("--bits", "--address-bits", "--rams", "--bleach", "--balance")
 
 SECTIONS = {
     "Images and labels": IMAGES,
-    "Feature vectors": TRAINING,
-    "Discriminators": DISCRIMINATORS,
     "Other classifiers": (*LUT_NETWORK, *OTHERS),
+    "Discriminators": DISCRIMINATORS,
+    "Feature vectors": TRAINING,
 }
 
 

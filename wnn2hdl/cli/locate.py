@@ -69,8 +69,8 @@ class MethodsType(click.ParamType[tuple[str, ...]]):
 
 SECTIONS = {
     "Flight": ("--map", *READING, "--frames", "--poses", "--camera", "--focal"),
-    "Calibration": ("--calibrate", "--calibrate-frames", "--calibration"),
     "Search": ("--methods", "--search", "--window", "--heading-tolerance", "--height-tolerance"),
+    "Calibration": ("--calibrate", "--calibrate-frames", "--calibration"),
 }
 
 

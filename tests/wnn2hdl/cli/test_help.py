@@ -9,11 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 from wnn2hdl.cli.commands import COMMANDS
-from wnn2hdl.cli.help import Command
+from wnn2hdl.cli.help import SCREEN, Command
 from wnn2hdl.cli.main import app
-
-SCREEN = 56
-"""Lines of 80 characters."""
 
 
 def command(name: str) -> Command:
@@ -37,6 +34,25 @@ def test_each_option_is_explained_in_a_sentence(name: str) -> None:
 def test_help_fits_a_screen(name: str) -> None:
     done = CliRunner().invoke(app, [name, "--help"], terminal_width=80)
     assert len(done.output.splitlines()) <= SCREEN
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_names_every_option_and_help_all_explains_them(name: str) -> None:
+    shown = CliRunner().invoke(app, [name, "--help"], terminal_width=80).output
+    every = CliRunner().invoke(app, [name, "--help-all"], terminal_width=80)
+    known = every.output if every.exit_code == 0 else shown
+    assert (every.exit_code == 0) == bool(command(name).sections)
+    for option in options(name):
+        assert max(option.opts, key=len) in shown
+        first, *_ = (option.help or "").split(",")[0].split("  [")[0].rsplit(" ", 2)
+        assert " ".join(first.split()) in " ".join(known.split())
+
+
+def test_what_does_not_fit_is_listed_by_name() -> None:
+    shown = CliRunner().invoke(app, ["compile", "--help"], terminal_width=80).output
+    assert "More, explained by --help-all:\n  Edge filter" in shown
+    assert "Learn N patterns." not in shown
+    assert "More, explained" not in CliRunner().invoke(app, ["compile", "--help-all"]).output
 
 
 @pytest.mark.parametrize("name", COMMANDS)
