@@ -82,7 +82,6 @@ def import_command(
     Examples:
       wnn2hdl import wisard.json --bleach 3 -o model.json
       wnn2hdl import iris.pickle.lzma --table iris.csv --label species -o model.json
-      wnn2hdl import truth_tables.json --config config.json -o model.json
     """
     options = ImportOptions(bleach=bleach, config=config, classes=classes)
     if table is None and label is not None:
