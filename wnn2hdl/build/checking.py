@@ -91,7 +91,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         for part, circuit in design.parts.items()
     }
     claimed = {part: circuit for part, circuit in emitted.items() if part in specification.claims}
-    verilog = _Proofs(
+    verilog = Proofs(
         {part: sides(specification, specification.claims[part], claimed[part]) for part in claimed},
         afresh=afresh,
     )
@@ -115,14 +115,14 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         part: (circuit, replace(circuit, sources=(syntheses[part].netlist_verilog,)))
         for part, circuit in emitted.items()
     }
-    netlists = _Proofs(pairs, afresh=afresh)
+    netlists = Proofs(pairs, afresh=afresh)
     if netlists.due:
         widths = {part: circuit.widths for part, circuit in design.parts.items()}
         netlists.note(prove_netlists({part: pairs[part] for part in netlists.due}, widths))
     failures = [
         mismatch,
-        _refutation(verilog.found, "Verilog"),
-        _refutation(netlists.found, "mapped netlist"),
+        refutation(verilog.found, "Verilog"),
+        refutation(netlists.found, "mapped netlist"),
     ]
     return Checked(
         syntheses,
@@ -133,7 +133,7 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
         method(specification),
         seconds,
         _claims(specification, verilog.found),
-        (*_undecided(specification, verilog.found), *_undecided_netlists(netlists.found)),
+        (*undecided(specification, verilog.found), *_undecided_netlists(netlists.found)),
         next((text for text in failures if text), None),
     )
 
@@ -209,7 +209,7 @@ class _Simulations:
         return {part: vectors[part] for part in self.keys if part in vectors}, failure
 
 
-class _Proofs:
+class Proofs:
     """Proofs of one kind, by circuit: remembered ones are left out.
 
     Attributes:
@@ -246,7 +246,7 @@ def _claims(specification: Specification, found: Mapping[str, Proof]) -> tuple[P
     )
 
 
-def _undecided(specification: Specification, found: Mapping[str, Proof]) -> list[str]:
+def undecided(specification: Specification, found: Mapping[str, Proof]) -> list[str]:
     """The claims that are open, and of one that rests on pieces the pieces that are open."""
     undecided = [part for part, proof in found.items() if proof.status == "undecided"]
     claims = [part for part in undecided if part in specification.claims]
@@ -258,7 +258,8 @@ def _undecided_netlists(found: Mapping[str, Proof]) -> list[str]:
     return [f"{part} netlist" for part, proof in found.items() if proof.status == "undecided"]
 
 
-def _refutation(proofs: Mapping[str, Proof], what: str) -> str | None:
+def refutation(proofs: Mapping[str, Proof], what: str) -> str | None:
+    """In words, the first difference that proofs found; None if they found none."""
     for part, proof in proofs.items():
         if proof.counterexample is not None:
             return f"the {what} of the {part} differs from the model {proof.counterexample}"

@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
+
+from amaranth.lib.wiring import In, Out
 
 from hdl_templates import sobel
 from hdl_templates.hierarchy import Part
@@ -22,6 +25,7 @@ from wnn2hdl.emit import (
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import write_text
 from wnn2hdl.minimise.portfolio import generators as minimisers
+from wnn2hdl.synth import Ports
 from wnn2hdl.tools import find_yosys
 
 SOBEL = "sobel"
@@ -96,6 +100,15 @@ def _baseline(design: Design, threshold: int) -> tuple[Part, str]:
         return parameters.create(), f"Baseline: {operator}."
     core = SobelCore(video=design.video, parameters=parameters)
     return core, f"Baseline: video core of the {operator}, of grey pixels."
+
+
+def top_ports(design: Design) -> Ports:
+    """The ports of the hardware of a design."""
+    part = top_part(design)
+    widths: dict[Any, dict[str, int]] = {In: {}, Out: {}}
+    for name, member in part.signature.members.items():
+        widths[member.flow][name] = int(member.shape)
+    return Ports(widths[In], widths[Out], part.clock if part.clocked else None)
 
 
 def generators() -> dict[str, str]:

@@ -9,16 +9,20 @@ import numpy as np
 
 from wnn2hdl.build.checking import synthesise_parts
 from wnn2hdl.build.compile import require_proved
+from wnn2hdl.build.folder import REPORT_PAGE
+from wnn2hdl.build.placing import PlacedBuild, place_build
 from wnn2hdl.build.playback import SimulatorName, play
 from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import allow_unproved_option, file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import reading_options
-from wnn2hdl.errors import CheckError
+from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.files import make_folder
 from wnn2hdl.images import write_png
 from wnn2hdl.raster import Reading
+from wnn2hdl.report import HARNESSES
+from wnn2hdl.synth import FABRICS, XC7Z020
 
 build_argument = click.argument("build", type=folder)
 
@@ -129,15 +133,45 @@ def simulate_command(
 
 @app.command("synth")
 @build_argument
+@click.option(
+    "--device",
+    type=click.Choice([XC7Z020.name, *FABRICS]),
+    default=XC7Z020.name,
+    show_default=True,
+    help="Count for this device; place and route on one that has other LUTs.",
+)
+@click.option(
+    "--pins",
+    type=file,
+    help="Assign ports to pins by these constraints (.lpf, .pcf or .cst).  [default: assigned automatically]",
+)
+@output_option("Write bitstream, netlist and timing into this folder.  [default: BUILD-DEVICE]")
 @json_option
-def synth_command(build: Path, as_json: bool) -> None:
-    """Count the LUTs of BUILD again, from its Verilog.
+def synth_command(build: Path, device: str, pins: Path | None, output: Path | None, as_json: bool) -> None:
+    """Count the LUTs of BUILD again, or place and route it and write a bitstream.
+
+    Place and route needs the extra `place`. Its figures are added to the report of BUILD. The ports of a
+    combinational circuit get registers on both sides, and shift registers where there are fewer pins.
 
     \b
     Examples:
       wnn2hdl synth build/mine
       wnn2hdl synth build/mine --json | jq .parts.block.luts
+      wnn2hdl synth build/mine --device ecp5-25k -o build/bitstream
+      wnn2hdl synth build/mine --device ice40-up5k --pins board.pcf
     """
+    if device in FABRICS:
+        output = output or build.resolve().with_name(f"{build.resolve().name}-{device}")
+        with progress() as report:
+            done = place_build(build, device, output, pins, report)
+        data = {"build": str(build), "placed": {device: done.figures}, "files": list(map(str, done.files))}
+        emit(data, _placed(build, device, done), as_json=as_json)
+        return
+    if pins is not None or output is not None:
+        raise InputError(
+            f"a count for {device} takes no pins and writes no files",
+            hint=f"give --device {' or '.join(FABRICS)}",
+        )
     design, files, _ = open_build(build)
     with progress() as report:
         syntheses = synthesise_parts(design, files, report)
@@ -152,3 +186,15 @@ def synth_command(build: Path, as_json: bool) -> None:
     }
     lines = [f"{part}: {figures['luts']} LUTs, {figures['delay_ps']} ps" for part, figures in parts.items()]
     emit(data, "\n".join([f"{first.tool} {first.version}, {first.options}", *lines]), as_json=as_json)
+
+
+def _placed(build: Path, device: str, done: PlacedBuild) -> str:
+    figures = done.figures
+    cells = figures["cells"]
+    fmax = "no clock" if figures["fmax_mhz"] is None else f"{figures['fmax_mhz']:.1f} MHz"
+    return (
+        f"{figures['circuit']} on {device}: {cells['luts']} LUTs of four inputs, {cells['ffs']} flip-flops, "
+        f"{cells['rams']} block RAMs; {fmax} after routing, {figures['proof']} before it\n"
+        f"{HARNESSES[figures['harness']]}; pins {figures['pins']}, seed {figures['seed']}\n"
+        f"bitstream {done.files[-1]}; figures added to {build / REPORT_PAGE}"
+    )

@@ -1,7 +1,7 @@
 """Component to files: Verilog, models of cells, testbench with vectors, manifest."""
 
 from wnn2hdl.emit.cells import CELLS_FILE, cells_model
-from wnn2hdl.emit.manifest import MANIFEST_NAME, check, manifest, write_manifest
+from wnn2hdl.emit.manifest import MANIFEST_NAME, check, manifest, renew_manifest, write_manifest
 from wnn2hdl.emit.stream_testbench import stream_testbench, stream_vectors
 from wnn2hdl.emit.testbench import testbench, vectors
 from wnn2hdl.emit.verilog import verilog
@@ -12,6 +12,7 @@ __all__ = [
     "cells_model",
     "check",
     "manifest",
+    "renew_manifest",
     "stream_testbench",
     "stream_vectors",
     "testbench",

@@ -44,6 +44,18 @@ def write_manifest(
     write_json(folder / MANIFEST_NAME, manifest(contents, versions=versions, options=options))
 
 
+def renew_manifest(folder: Path, names: Sequence[str]) -> None:
+    """Note in a folder's manifest that files which it names were written again.
+
+    Raises:
+        ModelFileError: the manifest is missing or damaged.
+        InputError: a file cannot be read, or the folder cannot be written.
+    """
+    data = _load(folder)
+    data["files"] |= {name: hashlib.sha256(_read(folder / name)).hexdigest() for name in names}
+    write_json(folder / MANIFEST_NAME, data)
+
+
 def check(folder: Path, *, besides: Container[str] = ()) -> list[str]:
     """Differences between a folder and its manifest, one line each; none if all is as it was written.
 
@@ -57,12 +69,8 @@ def check(folder: Path, *, besides: Container[str] = ()) -> list[str]:
         ModelFileError: the manifest is missing or damaged.
         InputError: a file cannot be read.
     """
-    data = read_json(folder / MANIFEST_NAME, "a manifest")
-    files = data.get("files")
-    if data.get("format") != FORMAT or not isinstance(files, dict) or not files:
-        raise ModelFileError("not a manifest", value=folder / MANIFEST_NAME, hint="compile the model again")
     differences = []
-    for name, digest in files.items():
+    for name, digest in _load(folder)["files"].items():
         if name in besides:
             continue
         if not (folder / name).is_file():
@@ -70,6 +78,14 @@ def check(folder: Path, *, besides: Container[str] = ()) -> list[str]:
         elif hashlib.sha256(_read(folder / name)).hexdigest() != digest:
             differences.append(f"{name} was changed")
     return differences
+
+
+def _load(folder: Path) -> dict[str, Any]:
+    data = read_json(folder / MANIFEST_NAME, "a manifest")
+    files = data.get("files")
+    if data.get("format") != FORMAT or not isinstance(files, dict) or not files:
+        raise ModelFileError("not a manifest", value=folder / MANIFEST_NAME, hint="compile the model again")
+    return data
 
 
 def _read(path: Path) -> bytes:

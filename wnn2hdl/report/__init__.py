@@ -23,9 +23,11 @@ from wnn2hdl.report.index_page import Entry, Exhibit, index_page, is_index
 from wnn2hdl.report.markdown import report_markdown
 from wnn2hdl.report.model_figures import model_figures
 from wnn2hdl.report.page import Picture, build_page, percent
+from wnn2hdl.report.placed import HARNESSES, placed_rows
 from wnn2hdl.report.schemas import check_report, load_report
 
 __all__ = [
+    "HARNESSES",
     "PUBLISHED",
     "REPORT_VERSION",
     "BuildReport",
@@ -54,6 +56,7 @@ __all__ = [
     "load_report",
     "model_figures",
     "percent",
+    "placed_rows",
     "published_figures",
     "read_baseline",
     "report_dict",

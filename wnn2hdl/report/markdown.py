@@ -8,6 +8,7 @@ from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.markdown import MISSING, escaped, table
 from wnn2hdl.report.charts import published
 from wnn2hdl.report.page import MANY_TABLES, form, light_curves, plain_options, simulations
+from wnn2hdl.report.placed import NOTE, PLACED_HEADS, placed_notes, placed_rows
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -46,6 +47,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         f"Counted after `{report['count']}`." if report["count"] else "",
         _COUNTING,
         _utilisation(report),
+        _placed(report),
         _published(report),
         _answers(report),
         _light(report),
@@ -168,6 +170,14 @@ def _utilisation(report: Mapping[str, Any]) -> str:
     rows = ([part, *(form(shares.get(kind), "points") for kind in kinds)] for part, shares in parts.items())
     heads = [_COLUMNS.get(kind, kind) for kind in kinds]
     return f"## Share of the {report['device']}\n\n" + table(["part", *heads], rows)
+
+
+def _placed(report: Mapping[str, Any]) -> str:
+    rows = placed_rows(report)
+    if not rows:
+        return ""
+    notes = "\n".join(f"- {escaped(note)}" for note in placed_notes(report))
+    return f"## Placed and routed\n\n{table(PLACED_HEADS, rows)}\n\n{notes}\n\n{NOTE}"
 
 
 def _minimised(tables: Mapping[str, Mapping[str, int]]) -> str:

@@ -17,6 +17,8 @@ from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.markdown import MISSING
 from wnn2hdl.report.charts import cube_bars, for_all_widths, light_lines, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
+from wnn2hdl.report.placed import NOTE as PLACED_NOTE
+from wnn2hdl.report.placed import PLACED_HEADS, placed_notes, placed_rows
 from wnn2hdl.report.schematic import draw
 
 if TYPE_CHECKING:
@@ -168,6 +170,9 @@ def build_page(
             quantity: for_all_widths(light_lines, quantity, points) for quantity, points in curves.items()
         },
         as_taken=as_taken(report),
+        placed_heads=PLACED_HEADS,
+        placed_rows=placed_rows(report),
+        placed_notes=(*placed_notes(report), PLACED_NOTE),
         lut_chart=for_all_widths(lut_bars, report),
         few_covers=len(report["minimised"]) <= MANY_TABLES,
         cubes=_total(report["minimised"]),

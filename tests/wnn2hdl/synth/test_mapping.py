@@ -1,0 +1,44 @@
+"""Mapping to other FPGAs: counted, and the same logic as before."""
+
+import pytest
+
+from wnn2hdl.errors import CheckError
+from wnn2hdl.synth.fabrics import FABRICS
+from wnn2hdl.synth.mapping import map_to
+from wnn2hdl.verify.equivalence import Circuit, find_differences
+
+pytestmark = pytest.mark.slow
+
+# Two parities in LUTs that a synthesiser would make of one another if it might, and a comparison.
+DESIGN = """\
+module design (input wire [6:0] a, output wire [2:0] y);
+    LUT3 #(.INIT(8'h96)) first (.I0(a[0]), .I1(a[1]), .I2(a[2]), .O(y[0]));
+    LUT2 #(.INIT(4'h6)) second (.I0(y[0]), .I1(a[2]), .O(y[1]));
+    assign y[2] = a > 7'd77;
+endmodule
+"""
+
+SAME = """\
+module design (input wire [6:0] a, output wire [2:0] y);
+    assign y = {a > 7'd77, a[0] ^ a[1], ^a[2:0]};
+endmodule
+"""
+
+
+@pytest.mark.parametrize("device", FABRICS)
+def test_the_netlist_is_the_verilog_and_its_luts_stay(device: str) -> None:
+    mapped = map_to(FABRICS[device], DESIGN, "design")
+    assert 4 <= mapped.cells.luts <= 12
+    assert mapped.cells.ffs == 0
+    netlist = Circuit((mapped.logic,), "design")
+    other = Circuit((SAME.replace("77", "78"),), "design")
+    same, different = find_differences([(Circuit((SAME,), "design"), netlist), (other, netlist)], timeout=60)
+    assert same is None
+    assert isinstance(different, dict)
+    assert different["a"] == 78
+
+
+def test_a_cell_that_is_not_counted_is_an_error() -> None:
+    multiplied = "module big (input wire [17:0] a, b, output wire [35:0] p); assign p = a * b; endmodule\n"
+    with pytest.raises(CheckError, match="not counted: MULT18X18D"):
+        map_to(FABRICS["ecp5-25k"], multiplied, "big")
