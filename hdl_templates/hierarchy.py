@@ -1,5 +1,6 @@
 """Parts inside parts: submodules in simulation, instances of their own modules in emitted Verilog."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amaranth.hdl import ClockSignal, Fragment, Instance, Module
@@ -27,6 +28,11 @@ class Part(wiring.Component):
     def summary(self) -> str:
         """What it computes, for a comment above its module: the first line of its docstring."""
         return (type(self).__doc__ or "").partition("\n")[0]
+
+    @property
+    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
+        """For ports by name the Verilog attributes that tell tools what they are: values by name."""
+        return {}
 
 
 @dataclass

@@ -18,7 +18,7 @@ line that is longer than the memory, or a TUSER inside a line. The answers that 
 there are no more, and the pixels before the next TUSER are thrown away. What follows is as after a reset.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, ResetInserter, Signal, Value
@@ -83,6 +83,27 @@ class VideoCore(Part):
         rate = "a pixel" if len(self.pixels) == 1 else f"{len(self.pixels)} pixels"
         lines = f", of lines of up to {self.video.max_width} pixels" if self.windows else ""
         return f"AXI4-Stream Video: {what}, {rate} per clock{lines}."
+
+    @property
+    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
+        """See `Part.port_attributes`: what groups the ports in Vivado's IP Integrator (AMD UG1118)."""
+        streams = ("s_axis_video", "m_axis_video")
+        reset, axis = "xilinx.com:signal:reset:1.0", "xilinx.com:interface:axis:1.0"
+        return {
+            self.clock: {
+                "X_INTERFACE_INFO": f"xilinx.com:signal:clock:1.0 {self.clock} CLK",
+                "X_INTERFACE_PARAMETER": f"ASSOCIATED_BUSIF {':'.join(streams)}, ASSOCIATED_RESET aresetn",
+            },
+            "aresetn": {
+                "X_INTERFACE_INFO": f"{reset} aresetn RST",
+                "X_INTERFACE_PARAMETER": "POLARITY ACTIVE_LOW",
+            },
+            **{
+                port: {"X_INTERFACE_INFO": f"{axis} {stream} {port.removeprefix(f'{stream}_').upper()}"}
+                for stream in streams
+                for port in _stream(stream, 1, In, Out)
+            },
+        }
 
     def elaborate(self, platform: object) -> Any:
         """The classifiers and their queue; behind it the windows, or nothing; the queue of answers."""

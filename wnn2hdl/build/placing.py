@@ -8,15 +8,11 @@ from typing import Any
 from wnn2hdl.build.checking import Proofs, refutation, undecided
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.emission import render, top_ports
-from wnn2hdl.build.folder import REPORT_FILE, REPORT_HTML, REPORT_PAGE
-from wnn2hdl.build.reporting import write_page
+from wnn2hdl.build.extending import add_to_report, require_outside, require_unchanged
 from wnn2hdl.build.verification import open_build
-from wnn2hdl.emit import check as check_manifest
-from wnn2hdl.emit import renew_manifest
-from wnn2hdl.errors import CheckError, InputError
-from wnn2hdl.files import held, make_folder, read_text, write_bytes, write_json, write_text
+from wnn2hdl.errors import CheckError
+from wnn2hdl.files import make_folder, read_text, write_bytes, write_text
 from wnn2hdl.progress import Progress
-from wnn2hdl.report import report_markdown
 from wnn2hdl.synth import FABRICS, SEED, Fabric, Harnessed, Mapped, Placed, harness, map_to, place_and_route
 from wnn2hdl.tools import find_yosys
 from wnn2hdl.verify.equivalence import Circuit
@@ -59,13 +55,8 @@ def place_build(
         ToolError: a program is missing or failed.
     """
     design, _, _ = open_build(folder)
-    _require_unchanged(folder)
-    if output.resolve().is_relative_to(folder.resolve()):
-        raise InputError(
-            "the output lies in the build, which holds what the compiler writes and nothing else",
-            value=output,
-            hint="choose a folder beside it",
-        )
+    require_unchanged(folder)
+    require_outside(folder, output)
     fabric = FABRICS[device]
     for program in (fabric.family.placer.nextpnr, fabric.family.placer.packer):
         program.version()
@@ -117,17 +108,8 @@ def place_build(
         "tools": {find_yosys().name: find_yosys().version, **placed.tools},
     }
     files = _write(output, design.name, fabric, mapped[top], around, placed)
-    _add_to_report(folder, device, figures)
+    add_to_report(folder, {"placed": {device: figures}})
     return PlacedBuild(figures, files)
-
-
-def _require_unchanged(folder: Path) -> None:
-    """Raise CheckError if files of a build were changed: its manifest is about to be renewed."""
-    changes = check_manifest(folder, besides={REPORT_HTML})
-    if changes:
-        raise CheckError(
-            "the build was changed after it was compiled", value=changes[0], hint="compile the model again"
-        )
 
 
 def _prove_verilog(design: Design, circuits: Mapping[str, Circuit]) -> list[str]:
@@ -181,13 +163,3 @@ def _write(
     bitstream = folder / f"{name}{fabric.family.bitstream}"
     write_bytes(bitstream, placed.bitstream)
     return (*(folder / file for file in texts), bitstream)
-
-
-def _add_to_report(folder: Path, device: str, figures: dict[str, Any]) -> None:
-    with held(folder.resolve(), "build"):
-        _, _, report = open_build(folder)
-        report["placed"] = {**report.get("placed", {}), device: figures}
-        write_json(folder / REPORT_FILE, report)
-        write_text(folder / REPORT_PAGE, report_markdown(report))
-        write_page(folder)
-        renew_manifest(folder, (REPORT_FILE, REPORT_PAGE, REPORT_HTML))

@@ -10,6 +10,7 @@ import numpy as np
 from wnn2hdl.build.checking import synthesise_parts
 from wnn2hdl.build.compile import require_proved
 from wnn2hdl.build.folder import REPORT_PAGE
+from wnn2hdl.build.implementing import implement, write_vivado
 from wnn2hdl.build.placing import PlacedBuild, place_build
 from wnn2hdl.build.playback import SimulatorName, play
 from wnn2hdl.build.verification import open_build, verify_build
@@ -141,13 +142,29 @@ def simulate_command(
     help="Count for this device; place and route on one that has other LUTs.",
 )
 @click.option(
+    "--tool",
+    type=click.Choice(["yosys", "vivado"]),
+    default="yosys",
+    show_default=True,
+    help="Count with this program; Vivado also places and routes, out of context.",
+)
+@click.option("--scripts", is_flag=True, help="Write what Vivado runs, and do not run it.")
+@click.option(
     "--pins",
     type=file,
     help="Assign ports to pins by these constraints (.lpf, .pcf or .cst).  [default: assigned automatically]",
 )
-@output_option("Write bitstream, netlist and timing into this folder.  [default: BUILD-DEVICE]")
+@output_option("Write bitstream or scripts into this folder.  [default: BUILD-DEVICE, BUILD-vivado]")
 @json_option
-def synth_command(build: Path, device: str, pins: Path | None, output: Path | None, as_json: bool) -> None:
+def synth_command(
+    build: Path,
+    device: str,
+    tool: str,
+    scripts: bool,
+    pins: Path | None,
+    output: Path | None,
+    as_json: bool,
+) -> None:
     """Count the LUTs of BUILD again, or place and route it and write a bitstream.
 
     Place and route needs the extra `place`. Its figures are added to the report of BUILD. The ports of a
@@ -155,13 +172,18 @@ def synth_command(build: Path, device: str, pins: Path | None, output: Path | No
 
     \b
     Examples:
-      wnn2hdl synth build/mine
       wnn2hdl synth build/mine --json | jq .parts.block.luts
       wnn2hdl synth build/mine --device ecp5-25k -o build/bitstream
-      wnn2hdl synth build/mine --device ice40-up5k --pins board.pcf
     """
+    if tool == "vivado":
+        if device in FABRICS or pins is not None:
+            raise InputError(f"Vivado is for {XC7Z020.name}, out of context and without pins")
+        _in_vivado(build, output or _beside(build, tool), scripts, as_json)
+        return
+    if scripts:
+        raise InputError("only Vivado has scripts", hint="give --tool vivado")
     if device in FABRICS:
-        output = output or build.resolve().with_name(f"{build.resolve().name}-{device}")
+        output = output or _beside(build, device)
         with progress() as report:
             done = place_build(build, device, output, pins, report)
         data = {"build": str(build), "placed": {device: done.figures}, "files": list(map(str, done.files))}
@@ -186,6 +208,26 @@ def synth_command(build: Path, device: str, pins: Path | None, output: Path | No
     }
     lines = [f"{part}: {figures['luts']} LUTs, {figures['delay_ps']} ps" for part, figures in parts.items()]
     emit(data, "\n".join([f"{first.tool} {first.version}, {first.options}", *lines]), as_json=as_json)
+
+
+def _beside(build: Path, what: str) -> Path:
+    return build.resolve().with_name(f"{build.resolve().name}-{what}")
+
+
+def _in_vivado(build: Path, output: Path, scripts: bool, as_json: bool) -> None:
+    if scripts:
+        written = write_vivado(build, output)
+        run = [f"vivado -mode batch -source {file}" for file in written if file.suffix == ".tcl"]
+        emit({"build": str(build), "files": list(map(str, written))}, "\n".join(run), as_json=as_json)
+        return
+    with progress() as report:
+        figures = implement(build, output, report)
+    text = (
+        f"{figures['luts']} LUTs, {figures['ffs']} flip-flops, {figures['bram36']:g} block RAMs, "
+        f"{figures['dsp']} DSP slices; {figures['fmax_mhz']:.1f} MHz after routing, by Vivado "
+        f"{figures['version']}\nfigures added to {build / REPORT_PAGE}"
+    )
+    emit({"build": str(build), "vivado": figures}, text, as_json=as_json)
 
 
 def _placed(build: Path, device: str, done: PlacedBuild) -> str:

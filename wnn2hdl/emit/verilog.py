@@ -66,18 +66,21 @@ def _rtlil(part: Part, name: str, emission: Emission) -> str:
 def _module(part: Part, module: Module) -> str:
     comment = "".join(f"// {line}\n" for line in part.summary.splitlines())
     attribute = '(* keep_hierarchy = "yes" *)\n' if part.keep_hierarchy else ""
-    return comment + attribute + _text(module)
+    return comment + attribute + _text(module, part.port_attributes)
 
 
-def _text(module: Module) -> str:
+def _text(module: Module, attributes: Mapping[str, Mapping[str, str]]) -> str:
     """The module: statements level by level, each wire declared where it is driven, registers first."""
     found, widths = statements(module)
     registers = {statement.drives[0]: statement for statement in found if statement.clock}
-    ports = [f"    input  wire {range_of(len(bits))}{port}" for port, bits in module.inputs.items()]
+    ports = [
+        f"{_marks(attributes, port)}    input  wire {range_of(len(bits))}{port}"
+        for port, bits in module.inputs.items()
+    ]
     ports += [
-        f"    {registers[port].marks}output reg  {range_of(len(bits))}{port}"
+        f"{_marks(attributes, port)}    {registers[port].marks}output reg  {range_of(len(bits))}{port}"
         if port in registers
-        else f"    output wire {range_of(len(bits))}{port}"
+        else f"{_marks(attributes, port)}    output wire {range_of(len(bits))}{port}"
         for port, bits in module.outputs.items()
     ]
     levels = _levels(found)
@@ -92,6 +95,12 @@ def _text(module: Module) -> str:
             lines += _initial(register, net, widths)
         lines.append(_wrapped(f"    always @({register.clock}) ", register.text))
     return "\n".join([f"module {module.name} (", ",\n".join(ports), ");", *lines, "endmodule"]) + "\n"
+
+
+def _marks(attributes: Mapping[str, Mapping[str, str]], port: str) -> str:
+    """The attributes of a port, on a line of their own."""
+    texts = [f'{name} = "{value}"' for name, value in attributes.get(port, {}).items()]
+    return f"    (* {', '.join(texts)} *)\n" if texts else ""
 
 
 def _register(register: Statement, net: str, widths: Mapping[str, int]) -> str:

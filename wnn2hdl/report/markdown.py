@@ -8,7 +8,7 @@ from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.markdown import MISSING, escaped, table
 from wnn2hdl.report.charts import published
 from wnn2hdl.report.page import MANY_TABLES, form, light_curves, plain_options, simulations
-from wnn2hdl.report.placed import NOTE, PLACED_HEADS, placed_notes, placed_rows
+from wnn2hdl.report.placed import NOTE, PLACED_HEADS, placed_notes, placed_rows, vivado_rows
 
 _COLUMNS = {
     "luts": "LUTs",
@@ -47,6 +47,7 @@ def report_markdown(report: Mapping[str, Any]) -> str:
         f"Counted after `{report['count']}`." if report["count"] else "",
         _COUNTING,
         _utilisation(report),
+        _vivado(report),
         _placed(report),
         _published(report),
         _answers(report),
@@ -170,6 +171,11 @@ def _utilisation(report: Mapping[str, Any]) -> str:
     rows = ([part, *(form(shares.get(kind), "points") for kind in kinds)] for part, shares in parts.items())
     heads = [_COLUMNS.get(kind, kind) for kind in kinds]
     return f"## Share of the {report['device']}\n\n" + table(["part", *heads], rows)
+
+
+def _vivado(report: Mapping[str, Any]) -> str:
+    rows = vivado_rows(report)
+    return f"## Vivado, out of context\n\n{table(['figure', 'value'], rows)}" if rows else ""
 
 
 def _placed(report: Mapping[str, Any]) -> str:

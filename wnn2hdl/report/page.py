@@ -18,7 +18,7 @@ from wnn2hdl.markdown import MISSING
 from wnn2hdl.report.charts import cube_bars, for_all_widths, light_lines, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
 from wnn2hdl.report.placed import NOTE as PLACED_NOTE
-from wnn2hdl.report.placed import PLACED_HEADS, placed_notes, placed_rows
+from wnn2hdl.report.placed import PLACED_HEADS, placed_notes, placed_rows, vivado_rows
 from wnn2hdl.report.schematic import draw
 
 if TYPE_CHECKING:
@@ -170,6 +170,7 @@ def build_page(
             quantity: for_all_widths(light_lines, quantity, points) for quantity, points in curves.items()
         },
         as_taken=as_taken(report),
+        vivado_rows=vivado_rows(report),
         placed_heads=PLACED_HEADS,
         placed_rows=placed_rows(report),
         placed_notes=(*placed_notes(report), PLACED_NOTE),

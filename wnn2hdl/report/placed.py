@@ -1,4 +1,4 @@
-"""What a report says of a build that was placed and routed on other FPGAs."""
+"""What a report says of a build that was placed and routed: in Vivado, or on other FPGAs."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -48,6 +48,23 @@ def placed_notes(report: Mapping[str, Any]) -> list[str]:
         + ", ".join(f"{tool} {version}" for tool, version in figures["tools"].items())
         + "."
         for device, figures in report.get("placed", {}).items()
+    ]
+
+
+def vivado_rows(report: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What Vivado found, by name; nothing if it was not run."""
+    figures = report.get("vivado")
+    if not figures:
+        return []
+    return [
+        ("tool", f"Vivado {figures['version']}, for {figures['part']}"),
+        ("LUTs, combined pairs counting one", f"{figures['luts']:,}"),
+        ("flip-flops, with those at the ports of a circuit without streams", f"{figures['ffs']:,}"),
+        ("block RAMs of 36 Kb", f"{figures['bram36']:g}"),
+        ("DSP slices", f"{figures['dsp']:,}"),
+        ("clock asked for", f"{1000 / figures['period_ns']:.1f} MHz"),
+        ("worst slack", f"{figures['slack_ns']:.3f} ns"),
+        ("fastest clock of this placement", f"{figures['fmax_mhz']:.1f} MHz"),
     ]
 
 

@@ -27,7 +27,6 @@ module KEEP #(parameter [15:0] INIT = 0) (output O, input I0, I1, I2, I3);
 endmodule
 """
 
-# The netlist is written twice: in cells, and in the logic that Yosys's models of the cells stand for.
 _SCRIPT = """\
 read_verilog design.v
 hierarchy -top {top}
@@ -39,7 +38,10 @@ flatten -noscopeinfo
 opt_clean -purge
 tee -q -o stat.json stat -json
 write_verilog -noattr netlist.v
-design -reset
+"""
+
+# The netlist again, in the logic that Yosys's models of the cells stand for.
+_LOGIC = """\
 read_verilog netlist.v
 read_verilog -overwrite +/{models}
 hierarchy -top {top}
@@ -77,7 +79,7 @@ class Mapped:
     Attributes:
         cells: what it takes.
         netlist: Verilog of its cells, under the top module's name and ports.
-        logic: the same for a proof: Yosys's models of the cells in their place, block RAMs left as they are.
+        logic: the same for a proof, Yosys's models in the place of cells; empty if there are block RAMs.
         command: of Yosys, that made it.
     """
 
@@ -108,11 +110,12 @@ def map_to(fabric: Fabric, verilog: str, top: str) -> Mapped:
 
 def _map(fabric: Fabric, verilog: str, top: str, command: str) -> Mapped:
     yosys = find_yosys()
-    script = _SCRIPT.format(top=top, synthesis=command, models=fabric.family.models)
+    script = _SCRIPT.format(top=top, synthesis=command)
+    modelled = _LOGIC.format(top=top, models=fabric.family.models)
     maps = {"luts.v": _luts(), "keep.v": _KEEP.format(lut_cell=fabric.family.lut_cell)}
     key = {
         "verilog": cache.digest(verilog),
-        "flow": cache.digest(script + "".join(maps.values())),
+        "flow": cache.digest(script + modelled + "".join(maps.values())),
         "tool": yosys.name,
         "version": yosys.version,
     }
@@ -127,8 +130,11 @@ def _map(fabric: Fabric, verilog: str, top: str, command: str) -> Mapped:
             found = {
                 "cells": _statistics(folder / "stat.json", log),
                 "netlist": (folder / "netlist.v").read_text(encoding="utf-8"),
-                "logic": (folder / "logic.v").read_text(encoding="utf-8"),
+                "logic": "",
             }
+            if not _counted(fabric.family, found["cells"]).rams:
+                yosys.run(modelled, cwd=folder, timeout=_TIMEOUT)
+                found["logic"] = (folder / "logic.v").read_text(encoding="utf-8")
         cache.store("map", key, found)
     return Mapped(
         _counted(fabric.family, found["cells"]), str(found["netlist"]), str(found["logic"]), command
