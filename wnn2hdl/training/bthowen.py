@@ -104,15 +104,10 @@ def _owners(model: BloomWisardModel, bits: NDArray[np.bool_], labels: NDArray[np
         labels: int64 ``[rows]``.
     """
     counts = np.stack([_counts(model, bits[labels == label]) for label in range(len(model.classes))])
-    # One threshold has to part the entries of all filters.
-    for threshold in range(1, int(counts.max()) + 1):
-        found = counts >= threshold
-        if int(found.sum()) != int(model.contents.sum()):
-            continue
-        owners = _matched(found, model.contents)
-        if owners is not None:
-            return owners
-    return None
+    # One threshold has to part the entries of all filters, so as many reach it as are set in the model.
+    reach = int(model.contents.sum())
+    threshold = int(np.sort(counts, axis=None)[-reach]) if reach else int(counts.max()) + 1
+    return _matched(counts >= max(threshold, 1), model.contents)
 
 
 def _matched(found: NDArray[np.bool_], contents: NDArray[np.bool_]) -> list[int] | None:
