@@ -1,64 +1,59 @@
-"""Deforestation on unseen images, pixel by pixel and square by square, beside common classifiers.
+"""Deforestation on unseen images, beside common classifiers, in changed light and square by square.
 
-    python benchmarks/surveillance.py IMAGES MASKS [--seed 0] [--mappings 5] [--pixels 5000]
+    python benchmarks/surveillance.py IMAGES MASKS [--seed 0] [--mappings 5] [--pixels 5000] [--squares]
 
-Five folds by image. Every classifier of single pixels is trained on the same pixels: equally many of each
-training image, drawn at random; those of neighbourhoods draw their own windows. Squares are those of the
-reference
-design: 20 x 20, half of the pixels vote; they are scored against the majority of each square of the mask, and
-against its pixels.
+Five folds by image. Rivals are trained on equally many pixels of each training image, drawn at random; what
+has a circuit is trained on whole images, as `wnn2hdl train` does it. The table gives the mean share of right
+pixels of an image with all levels multiplied by each exposure, as a camera saturates, the worst image at x1,
+and the LUTs per pixel of what has a circuit, trained on all images.
+
+With --squares it gives pixels and squares of the reference design instead: 20 x 20, half of the pixels vote;
+they are scored against the majority of each square of the mask, and against its pixels.
 """
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.ensemble import RandomForestClassifier
-from sklearn.linear_model import LogisticRegression
-from sklearn.pipeline import make_pipeline
-from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
-from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, folds, from_masks
+from benchmarks.light import SHAPES, threshold
+from benchmarks.rivals import (
+    TREES,
+    Threshold,
+    boosting,
+    excess_green,
+    forest,
+    levels,
+    linear,
+    normalised_difference,
+    of_colours,
+    of_context,
+    of_varied_colours,
+    quadratic,
+    ratios,
+)
+from wnn2hdl.dataset import CLASSES, Dataset, colour_histogram, folds, from_masks
 from wnn2hdl.encode import high_bits
 from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels
 from wnn2hdl.evaluation.classifiers import PictureClassifier, model_classifier
-from wnn2hdl.evaluation.measures import ious
+from wnn2hdl.evaluation.light import light_curve
+from wnn2hdl.evaluation.measures import accuracy, ious
+from wnn2hdl.ir import Comparison, PixelEncoder, WisardModel
 from wnn2hdl.markdown import head, row
-from wnn2hdl.training.bitselect import LUTS
-from wnn2hdl.training.budget import train_under_budget
-from wnn2hdl.training.crossval import FOLDS
+from wnn2hdl.training.bitselect import LUTS, select_bits
+from wnn2hdl.training.budget import WITHIN, pixel_luts
+from wnn2hdl.training.comparisons import select_comparisons
+from wnn2hdl.training.crossval import EXPOSURES, FOLDS
 from wnn2hdl.training.discriminators import train
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 SIDE, SHARE = 20, 0.5
-TREES = 100
 
 Trainer = Callable[[Dataset], PictureClassifier]
-
-
-@dataclass(frozen=True, eq=False)
-class ColourClassifier:
-    """A rival that answers for colours, asked once for each colour of a picture.
-
-    Attributes:
-        predict: uint8 ``[n, 3]`` to class indices ``[n]``.
-    """
-
-    predict: Callable[[NDArray[np.uint8]], NDArray[np.integer]]
-    classes: tuple[str, ...] = CLASSES
-    halo: int = 0
-
-    def classify(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """See `PictureClassifier.classify`."""
-        colours, place = np.unique(picture.reshape(-1, 3), axis=0, return_inverse=True)
-        return self.predict(colours).astype(np.uint8)[place].reshape(picture.shape[:2])
-
-    def answer(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-        """Any colour is answered for."""
-        return self.classify(picture), np.ones(picture.shape[:2], dtype=np.bool_)
+ModelTrainer = Callable[[Dataset], WisardModel]
 
 
 def main() -> None:
@@ -69,58 +64,112 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--mappings", type=int, default=5)
     parser.add_argument("--pixels", type=int, default=5000)
+    parser.add_argument("--squares", action="store_true")
     given = parser.parse_args()
     dataset = from_masks(given.images, given.masks)
     print(
         f"{len(dataset)} images, {FOLDS} folds, {given.pixels} training pixels an image, seed {given.seed}\n"
     )
-    measures = ["pixels right", "IoU", "squares right", "IoU", "pixels of squares right", "IoU"]
-    print(head(["classifier", *measures]))
-    for name, trainers in rivals(given.pixels, given.mappings, given.seed).items():
-        results = [cross_validated(dataset, trainer, given.seed) for trainer in trainers]
-        print(row([name, *np.mean(results, axis=0).tolist()]), flush=True)
+    if given.squares:
+        columns = ["pixels right", "IoU", "squares right", "IoU", "pixels of squares right", "IoU"]
+    else:
+        columns = ["LUTs per pixel", *(f"x{exposure:g}" for exposure in EXPOSURES), "worst image"]
+    print(head(["classifier", *columns]))
+    models = circuits(given.mappings, given.seed)
+    trainers = rivals(given.pixels, given.seed)
+    trainers |= {name: [classifying(one) for one in several] for name, several in models.items()}
+    for name, several in trainers.items():
+        if given.squares:
+            results = [by_squares(dataset, trainer, given.seed) for trainer in several]
+            print(row([name, *np.mean(results, axis=0).tolist()]), flush=True)
+        else:
+            shares = np.mean([in_light(dataset, trainer) for trainer in several], axis=0)
+            needed = luts(models[name][0](dataset)) if name in models else ""
+            print(row([name, needed, *printed(shares)]), flush=True)
 
 
-def rivals(pixels: int, mappings: int, seed: int) -> dict[str, list[Trainer]]:
-    """What is compared: each row of the table is the mean over its trainers."""
-
-    def on_pixels(trainer: Trainer) -> Trainer:
-        return lambda dataset: trainer(sampled(dataset, pixels, seed))
-
-    def discriminators(mapping: int) -> Trainer:
-        return lambda dataset: model_classifier(
-            train(
-                dataset, high_bits(), address_bits=4, rams=16, bleaching=None, seed=mapping, progress=silent
-            )
-        )
-
-    def under_budget(luts: int) -> Trainer:
-        return lambda dataset: model_classifier(
-            train_under_budget(dataset, luts, trials=0, seed=seed, progress=silent)
-        )
-
-    def neighbourhood(size: int) -> Trainer:
-        return lambda dataset: model_classifier(
-            train_neighbourhood(dataset, size, luts_per_pixel=None, seed=seed, progress=silent)
-        )
-
-    single: dict[str, list[Trainer]] = {
-        "red threshold": [red_threshold],
-        "quadratic logistic regression": [quadratic_regression],
-        f"random forest of {TREES} trees": [lambda dataset: random_forest(dataset, seed)],
-        f"WiSARD n = 4, k = 16, mean of {mappings} mappings": [
-            discriminators(seed + i) for i in range(mappings)
-        ],
-        "bit selection, 1 LUT per pixel": [under_budget(1)],
-        "bit selection, 2 LUTs per pixel": [under_budget(2)],
+def rivals(pixels: int, seed: int) -> dict[str, list[Trainer]]:
+    """What has no circuit here: one trainer for each row of the table."""
+    trees, boosted = partial(forest, seed), partial(boosting, seed)
+    drawn = (pixels, seed)
+    return {
+        "(R - G) / (R + G) >= t": [partial(of_colours, Threshold, normalised_difference(0, 1), *drawn)],
+        "(R - B) / (R + B) >= t": [partial(of_colours, Threshold, normalised_difference(0, 2), *drawn)],
+        "excess green below t": [partial(of_colours, Threshold, excess_green, *drawn)],
+        "linear logistic regression": [partial(of_colours, linear, levels, *drawn)],
+        "quadratic logistic regression": [partial(of_colours, quadratic, levels, *drawn)],
+        "the same of log R/B, log R/G": [partial(of_colours, quadratic, ratios, *drawn)],
+        f"random forest of {TREES} trees": [partial(of_colours, trees, levels, *drawn)],
+        "gradient boosting": [partial(of_colours, boosted, levels, *drawn)],
+        "the same under varied light": [partial(of_varied_colours, boosted, levels, *drawn)],
+        "gradient boosting of log R/B, log R/G": [partial(of_colours, boosted, ratios, *drawn)],
+        "the same with means and deviations to 31": [partial(of_context, boosted, ratios, *drawn)],
+        "gradient boosting of RGB with the same": [partial(of_context, boosted, levels, *drawn)],
     }
-    whole: dict[str, list[Trainer]] = {
-        f"{size}x{size} neighbourhood, {LUTS} LUTs per pixel": [neighbourhood(size)] for size in (3, 5)
+
+
+def circuits(mappings: int, seed: int) -> dict[str, list[ModelTrainer]]:
+    """What has a circuit: each row of the table is the mean over its trainers."""
+
+    def discriminators(mapping: int) -> ModelTrainer:
+        return lambda dataset: train(
+            dataset, high_bits(), address_bits=4, rams=16, bleaching=None, seed=mapping, progress=silent
+        )
+
+    def bit_selection(count: int, dataset: Dataset) -> WisardModel:
+        images = [colour_histogram(image, len(CLASSES)) for image in dataset]
+        return select_bits(images, CLASSES, luts=count, seed=seed)
+
+    def comparisons(count: int, dataset: Dataset) -> WisardModel:
+        images = [colour_histogram(image, len(CLASSES)) for image in dataset]
+        return select_comparisons(images, CLASSES, luts=count, seed=seed)
+
+    def compared(shape: Comparison, dataset: Dataset) -> WisardModel:
+        return threshold(shape, [colour_histogram(image, len(CLASSES)) for image in dataset])
+
+    def neighbourhood(size: int) -> ModelTrainer:
+        return lambda dataset: train_neighbourhood(
+            dataset, size, luts_per_pixel=None, seed=seed, progress=silent
+        )
+
+    found: dict[str, list[ModelTrainer]] = {
+        f"{name} + t": [partial(compared, shape)] for name, shape in SHAPES.items()
     }
-    return {name: [on_pixels(trainer) for trainer in trainers] for name, trainers in single.items()} | whole
+    found[f"WiSARD n = 4, k = 16, mean of {mappings} mappings"] = [
+        discriminators(seed + i) for i in range(mappings)
+    ]
+    found |= {f"bit selection, {count} LUT": [partial(bit_selection, count)] for count in (1, 2)}
+    found |= {f"comparisons of channels, {count} LUTs": [partial(comparisons, count)] for count in WITHIN}
+    return found | {f"{size}x{size} neighbourhood": [neighbourhood(size)] for size in (3, 5)}
 
 
-def cross_validated(dataset: Dataset, trainer: Trainer, seed: int) -> list[float]:
+def classifying(trainer: ModelTrainer) -> Trainer:
+    """The trainer of the classifier that a model is."""
+    return lambda dataset: model_classifier(trainer(dataset))
+
+
+def luts(model: WisardModel) -> int:
+    """LUTs per pixel of a model's exact circuit; a neighbourhood's are known."""
+    return pixel_luts(model) if isinstance(model.encoder, PixelEncoder) else LUTS
+
+
+def in_light(dataset: Dataset, trainer: Trainer) -> NDArray[np.float64]:
+    """Share of right pixels of each image at each of `EXPOSURES`, in its fold: ``[images, exposures]``."""
+    shares: dict[str, NDArray[np.float64]] = {}
+    for training, held_out in folds(dataset.names, FOLDS):
+        classifier = trainer(dataset.subset(training))
+        curve = light_curve(classifier, dataset.subset(held_out), "exposure", EXPOSURES, silent)
+        shares |= dict(zip(curve.names, accuracy(curve.confusion).T, strict=True))
+    return np.stack([shares[name] for name in dataset.names])
+
+
+def printed(shares: NDArray[np.float64]) -> list[str]:
+    """The mean over images at each exposure, and the worst image at x1."""
+    worst = shares[:, EXPOSURES.index(1.0)].min()
+    return [f"{share:.3f}" for share in (*shares.mean(axis=0), worst)]
+
+
+def by_squares(dataset: Dataset, trainer: Trainer, seed: int) -> list[float]:
     """Share right and IoU of "deforested": of pixels, of squares, of squares' pixels; over all images."""
     confusions = np.zeros((3, 2, 2), dtype=np.int64)
     for training, held_out in folds(dataset.names, FOLDS):
@@ -132,53 +181,6 @@ def cross_validated(dataset: Dataset, trainer: Trainer, seed: int) -> list[float
             confusions[place] += evaluate(classifier, labelled, silent, voting).confusion.sum(axis=0)
     right = np.trace(confusions, axis1=1, axis2=2) / confusions.sum(axis=(1, 2))
     return np.stack([right, ious(confusions)[:, 1]], axis=1).ravel().tolist()
-
-
-def sampled(dataset: Dataset, count: int, seed: int) -> Dataset:
-    """Of each image ``count`` pixels drawn without replacement, the same whichever images are in the set."""
-
-    def load(name: str) -> LabelledImage:
-        image = dataset.load(name)
-        rng = np.random.default_rng([seed, *name.encode()])
-        chosen = rng.choice(len(image.labels), size=min(count, len(image.labels)), replace=False)
-        return LabelledImage(name, image.pixels[chosen], image.labels[chosen])
-
-    return Dataset(dataset.classes, dataset.names, load)
-
-
-def gathered(dataset: Dataset) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """All pixels and labels of a set."""
-    images = list(dataset)
-    return np.concatenate([i.pixels for i in images]), np.concatenate([i.labels for i in images])
-
-
-def red_threshold(dataset: Dataset) -> PictureClassifier:
-    """Deforested is what is at least as red as the threshold with the most training pixels right."""
-    pixels, labels = gathered(dataset)
-    counts = np.stack([np.bincount(pixels[labels == label, 0], minlength=256) for label in (0, 1)])
-    right = [counts[1, level:].sum() + counts[0, :level].sum() for level in range(257)]
-    threshold = int(np.argmax(right))
-    return ColourClassifier(lambda colours: (colours[:, 0] >= threshold).astype(np.int64))
-
-
-def quadratic_regression(dataset: Dataset) -> PictureClassifier:
-    """Logistic regression on RGB, its squares and products."""
-    pixels, labels = gathered(dataset)
-    model = make_pipeline(
-        PolynomialFeatures(2, include_bias=False),
-        StandardScaler(),
-        LogisticRegression(solver="newton-cholesky"),
-    )
-    model.fit(pixels.astype(np.float64), labels)
-    return ColourClassifier(lambda colours: np.asarray(model.predict(colours.astype(np.float64))))
-
-
-def random_forest(dataset: Dataset, seed: int) -> PictureClassifier:
-    """A random forest on RGB; leaves of at least 20 pixels, without which it learns the noise."""
-    pixels, labels = gathered(dataset)
-    model = RandomForestClassifier(TREES, min_samples_leaf=20, random_state=seed)
-    model.fit(pixels, labels)
-    return ColourClassifier(lambda colours: np.asarray(model.predict(colours)))
 
 
 def silent(step: str, done: int, total: int) -> None:
