@@ -160,7 +160,8 @@ def _positions(
         step.eq(takes | (flush & ~waits)),
         taken.eq(moves & takes),
         closes.eq(takes & last & last_line & (start | ~idle)),
-        turns.eq(done | halts | (takes & last)),
+        # As `halts` or `takes` with the last of a line, written out to be two LUTs deep.
+        turns.eq(done | (head.valid & ~flush & ((start & ~(idle & line_starts)) | (last & ~waits)))),
         marks.eq((step & (line_starts | line_goes_on | flush)) | halts),
     ]
     with m.If(moves):

