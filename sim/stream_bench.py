@@ -35,7 +35,7 @@ def _pauses(seed: int) -> Iterator[bool]:
 async def lines_equal_the_model(dut: Any) -> None:
     """What comes out are the lines of the model, each beat marked as in its frame, and no more."""
     data = json.loads(Path(os.environ[LINES]).read_text(encoding="utf-8"))
-    cocotb.start_soon(Clock(dut.aclk, _PERIOD_NS, "ns").start())
+    Clock(dut.aclk, _PERIOD_NS, "ns").start()
     ports = dut.aclk, dut.aresetn
     source = AxiStreamSource(AxiStreamBus.from_prefix(dut, "s_axis_video"), *ports, reset_active_level=False)
     sink = AxiStreamSink(AxiStreamBus.from_prefix(dut, "m_axis_video"), *ports, reset_active_level=False)
