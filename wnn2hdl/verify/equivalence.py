@@ -19,6 +19,7 @@ these, and the circuits differ. All registers have to be clocked by the rising e
 import json
 import re
 import tempfile
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -175,7 +176,7 @@ def evaluate(
     settings = " ".join(f"-set {port} {widths[port]}'h{value:x}" for port, value in inputs.items())
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
-        script = [*read_cells([circuit]), *read(circuit, 0, folder), "flatten", "opt_clean"]
+        script = [*read_cells([circuit]), *read([circuit], folder)[0], "flatten", "opt_clean"]
         if circuit.latency:
             (folder / "wires.v").write_text(_REGISTERS_AS_WIRES, encoding="utf-8")
             script += [
@@ -196,8 +197,8 @@ def evaluate(
 def _write_graphs(circuits: Sequence[Circuit], folder: Path, timeout: float) -> list[_Graph]:
     """Write the graph of circuit ``i`` to ``i.aig``; return their ports."""
     script = read_cells(circuits)
-    for number, circuit in enumerate(circuits):
-        script += read(circuit, number, folder)
+    for number, (circuit, reading) in enumerate(zip(circuits, read(circuits, folder), strict=True)):
+        script += reading
         # Mapping each module once, and merging its equal gates, before it is flattened into its nine
         # instances is what makes this quick: flattening takes the longest, a time for each gate.
         script += ["check -assert", "setundef -anyseq", *TO_GATES]
@@ -238,7 +239,7 @@ def structure(circuit: Circuit, commands: Sequence[str], *, timeout: float) -> d
     """
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
-        script = [*read_cells([circuit]), *read(circuit, 0, folder), *commands, "write_json circuit.json"]
+        script = [*read_cells([circuit]), *read([circuit], folder)[0], *commands, "write_json circuit.json"]
         find_yosys().run("\n".join(script) + "\n", timeout=timeout, cwd=folder)
         modules = json.loads((folder / "circuit.json").read_text(encoding="utf-8"))["modules"]
     found: dict[str, Any] = modules[circuit.top]
@@ -250,21 +251,38 @@ def one_clock(circuit: Circuit) -> list[str]:
     return _ONE_CLOCK if circuit.latency else []
 
 
-def read(circuit: Circuit, number: int, folder: Path) -> list[str]:
-    """Write the sources and return the commands that read them into an empty design.
+def read(circuits: Sequence[Circuit], folder: Path) -> list[list[str]]:
+    """Write the sources; return for each circuit the commands that read it into an empty design.
+
+    The commands are to be run in this order: texts that several circuits share are read once.
 
     Args:
-        circuit: the circuit.
-        number: keeps the files of several circuits apart.
+        circuits: the circuits.
         folder: where Yosys will run.
     """
-    script = ["design -reset", *(f"design -copy-from cells ={cell}" for cell in sorted(_cells(circuit)))]
-    for position, text in enumerate(circuit.sources):
-        name = f"{number}_{position}.v"
-        (folder / name).write_text(text, encoding="utf-8")
-        script.append(f"read_verilog -nooverwrite {name}")
-    # A module that asks a synthesiser to keep it would not be flattened.
-    return [*script, f"hierarchy -check -top {circuit.top}", "setattr -mod -unset keep_hierarchy *", "proc"]
+    shared = Counter(circuit.sources for circuit in circuits)
+    numbers: dict[tuple[str, ...], int] = {}
+    scripts: list[list[str]] = []
+    for circuit in circuits:
+        saved = numbers.get(circuit.sources)
+        if saved is None:
+            saved = numbers[circuit.sources] = len(numbers)
+            script = [
+                "design -reset",
+                *(f"design -copy-from cells ={cell}" for cell in sorted(_cells(circuit))),
+            ]
+            for position, text in enumerate(circuit.sources):
+                name = f"{saved}_{position}.v"
+                (folder / name).write_text(text, encoding="utf-8")
+                script.append(f"read_verilog -nooverwrite {name}")
+            if shared[circuit.sources] > 1:
+                script.append(f"design -save read_{saved}")
+        else:
+            script = [f"design -load read_{saved}"]
+        # A module that asks a synthesiser to keep it would not be flattened.
+        script += [f"hierarchy -check -top {circuit.top}", "setattr -mod -unset keep_hierarchy *", "proc"]
+        scripts.append(script)
+    return scripts
 
 
 def read_cells(circuits: Sequence[Circuit]) -> list[str]:

@@ -18,6 +18,10 @@ PART = "network"
 SAMPLES = 10_240
 """Feature vectors that a network is simulated on: random ones, and ones beside thresholds."""
 
+_FEWEST_SAMPLES = 512
+_WORK = 1 << 20
+"""Tables and bits of the encoder times vectors, above which there are fewer vectors down to the fewest."""
+
 
 def network_specification(model: NetworkModel, circuit: Circuit | None = None) -> Specification:
     """The claim of a model whose tables vote for classes.
@@ -40,13 +44,15 @@ def network_specification(model: NetworkModel, circuit: Circuit | None = None) -
     if isinstance(encoder, ThermometerBits):
         masks = {"class_bits": Mask(f"proof__care_{PART}", "features")}
         care = module(masks["class_bits"].module, {"features": encoder.width}, {"cared": 1}, _falls(encoder))
+    size = len(owners_of(model)) + len(positions_read(model))
+    samples = min(SAMPLES, max(_FEWEST_SAMPLES, _WORK // size))
     claim = Claim(
         PART,
         {"features": features_width(encoder)},
         {"class_bits": width},
         f"proof__{PART}",
         answers,
-        lambda: {"features": stimulus(encoder)},
+        lambda: {"features": stimulus(encoder, samples)},
         masks=masks,
     )
     reference = module(claim.module, claim.inputs, claim.outputs, _lines(model))
@@ -69,25 +75,25 @@ def encoder_bits(encoder: Encoder, features: Bits) -> Bits:
     return encoder.bits_of_words(digits @ weights)
 
 
-def stimulus(encoder: Encoder) -> Bits:
+def stimulus(encoder: Encoder, samples: int = SAMPLES) -> Bits:
     """Values of ``features``: half random, half with every feature at one of its thresholds or just below.
 
     Of thermometer bits all are random, but occur together.
     """
     rng = np.random.default_rng(0)
     if isinstance(encoder, ThermometerBits):
-        reached = rng.integers(0, encoder.levels + 1, (SAMPLES, encoder.thermometers))
+        reached = rng.integers(0, encoder.levels + 1, (samples, encoder.thermometers))
         return np.concatenate([reached > level for level in range(encoder.levels)], axis=1)
     if not isinstance(encoder, Thermometer):
-        return rng.random((SAMPLES, features_width(encoder))) < 0.5
+        return rng.random((samples, features_width(encoder))) < 0.5
     form = encoder.input
     assert form is not None
-    words = rng.integers(form.lowest, form.highest + 1, size=(SAMPLES, encoder.features))
+    words = rng.integers(form.lowest, form.highest + 1, size=(samples, encoder.features))
     for feature, levels in enumerate(encoder.levels):
         if levels:
-            beside = rng.choice(np.array(levels), SAMPLES // 2) - rng.integers(0, 2, SAMPLES // 2)
-            words[: SAMPLES // 2, feature] = np.clip(beside, form.lowest, form.highest)
-    return codes_to_bits(words & (1 << form.bits) - 1, form.bits).reshape(SAMPLES, -1)
+            beside = rng.choice(np.array(levels), samples // 2) - rng.integers(0, 2, samples // 2)
+            words[: samples // 2, feature] = np.clip(beside, form.lowest, form.highest)
+    return codes_to_bits(words & (1 << form.bits) - 1, form.bits).reshape(samples, -1)
 
 
 def _lines(model: NetworkModel) -> list[str]:

@@ -57,9 +57,26 @@ def encoder_lines(encoder: Encoder, read: Container[int]) -> tuple[list[str], li
                 signals.append("1'b0")
                 continue
             name = f"x_{feature}_{position}"
-            lines.append(f"  wire {name} = x_{feature} >= {form.bits}'h{level - form.lowest:x};")
+            lines.append(f"  wire {name} = {at_least(f'x_{feature}', level - form.lowest, form.bits)};")
             signals.append(name)
     return lines, signals
+
+
+def at_least(word: str, least: int, width: int, low: int = 0) -> str:
+    """The expression ``word >= least``, bit by bit, which Yosys maps much faster than a comparison.
+
+    From the lowest bit up: where a bit of ``least`` is set, the bit of the word has to be set, and what is
+    below it has to be enough; where it is not, either will do. The word has its lowest bit at ``low``.
+    """
+    if least <= 0:
+        return "1'b1"
+    if least >> width:
+        return "1'b0"
+    lowest = (least & -least).bit_length() - 1
+    expression = f"{word}[{low + lowest}]"
+    for place in range(lowest + 1, width):
+        expression = f"({word}[{low + place}] {'&' if least >> place & 1 else '|'} {expression})"
+    return expression
 
 
 def owners_of(model: NetworkModel) -> list[int]:

@@ -35,7 +35,14 @@ from wnn2hdl.ir.models import NetworkModel
 from wnn2hdl.ir.wires import Slice
 from wnn2hdl.verify.addition import Sums
 from wnn2hdl.verify.composition import Box, Composition, Piece, bits
-from wnn2hdl.verify.network_lines import encoder_lines, features_width, owners_of, positions_read, table_lines
+from wnn2hdl.verify.network_lines import (
+    at_least,
+    encoder_lines,
+    features_width,
+    owners_of,
+    positions_read,
+    table_lines,
+)
 from wnn2hdl.verify.reference import class_bits, module, weighted_sum, winning
 
 
@@ -231,7 +238,7 @@ def _ranks(encoder: Encoder, read: Container[int]) -> tuple[int, list[str]]:
                 expressions.append("1'b0")
             elif form.lowest < level <= form.highest:
                 rank = reached.index(level) + 1
-                expressions.append(f"ranks[{low + width - 1}:{low}] >= {width}'d{rank}")
+                expressions.append(at_least("ranks", rank, width, low))
             else:
                 expressions.append(f"1'b{int(level <= form.lowest)}")
         low += width

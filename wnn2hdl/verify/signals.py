@@ -161,8 +161,8 @@ def read_signals(circuits: Sequence[Circuit]) -> list[Signals | None]:
         if script:
             # A table stays one gate, which is quicker to evaluate than the multiplexers that it is made of.
             script += ["design -load cells", f"blackbox {' '.join(_TABLES)}", "design -stash cells"]
-        for number, circuit in enumerate(circuits):
-            script += [*read(circuit, number, folder), "check -assert"]
+        for number, (circuit, reading) in enumerate(zip(circuits, read(circuits, folder), strict=True)):
+            script += [*reading, "check -assert"]
             script += ["flatten -noscopeinfo", "opt_expr", "techmap", *one_clock(circuit), "opt_clean"]
             script.append(f"write_json {number}.json")
         find_yosys().run("\n".join(script) + "\n", timeout=_SECONDS, cwd=folder)

@@ -11,8 +11,9 @@ from wnn2hdl.ir.models import NetworkModel
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.lower.structural import network
 from wnn2hdl.minimise.circuit import minimise
-from wnn2hdl.verify.equivalence import Circuit, evaluate
+from wnn2hdl.verify.equivalence import Circuit, evaluate, find_differences
 from wnn2hdl.verify.network import network_specification
+from wnn2hdl.verify.network_lines import at_least
 from wnn2hdl.verify.proof import prove
 
 
@@ -75,3 +76,24 @@ def test_a_network_is_proved_and_a_wrong_one_refuted() -> None:
     found = prove(specification, {"network": Circuit((spoiled,), "x_network")})["network"].counterexample
     assert found is not None
     assert found.expected != found.actual
+
+
+def test_a_threshold_bit_by_bit_is_a_comparison() -> None:
+    def circuit(sides: list[str]) -> Circuit:
+        lines = "".join(f"assign y[{least}] = {side};\n" for least, side in enumerate(sides))
+        return Circuit((f"module x(input [5:0] w, output [15:0] y);\n{lines}endmodule\n",), "x")
+
+    plain = circuit([f"w[5:2] >= 4'd{least}" for least in range(16)])
+    bitwise = circuit([at_least("w", least, 4, low=2) for least in range(16)])
+    assert find_differences([(plain, bitwise)], timeout=60) == [None]
+    assert at_least("w", -1, 4) == "1'b1"
+    assert at_least("w", 16, 4) == "1'b0"
+
+
+def test_large_networks_are_simulated_on_fewer_vectors() -> None:
+    def vectors(tables: int) -> int:
+        draw = network_specification(lut_network(3, layers=(tables,))).claims["network"].stimulus
+        assert draw is not None
+        return len(draw()["features"])
+
+    assert [vectors(tables) for tables in (12, 200, 3000)] == [10_240, (1 << 20) // 212, 512]
