@@ -205,6 +205,7 @@ def network_report(report: dict[str, Any]) -> dict[str, Any]:
     report["edges"] = dict.fromkeys(report["edges"])
     report["care"] = dict.fromkeys(report["care"])
     report["confusion"] = None
+    report["light"] = {"curves": {}, "warning": None}
     return report
 
 
@@ -233,9 +234,9 @@ def test_a_page_of_a_thousand_tables_is_quick_and_small(network_report: dict[str
     network_report["confusion"] = [[10] * 100] * 100
     networks = tables(1000)
     build_page(network_report, {})
-    started = time.perf_counter()
+    started = time.process_time()
     page = build_page(network_report, networks)
-    assert time.perf_counter() - started < 2
+    assert time.process_time() - started < 2
     assert len(page) < 300_000
     assert "Schematic of" not in page
     rows = re.findall(r"<tr>((?:<td class=\"number\">[\d,]+</td>){5})</tr>", page)
