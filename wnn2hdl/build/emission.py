@@ -163,6 +163,11 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
     }
 
 
+def render_unpaired(design: Design) -> str:
+    """The Verilog of a design for FPGAs of other families, in which no two LUTs share a cell."""
+    return verilog(top_part(design), prefix=f"{design.name}_", header=(), pairs=False)
+
+
 def emit(design: Design, folder: Path, *, sobel_threshold: int) -> Files:
     """Write a design and its emitted files into an existing folder; raises as `render`."""
     design.save(folder)

@@ -10,7 +10,7 @@ from typing import Any
 
 from wnn2hdl.build.remembered import code_digest
 from wnn2hdl.errors import CheckError, ModelFileError
-from wnn2hdl.ir import Cover, Cube, LutNetwork, TruthTable
+from wnn2hdl.ir import LUT_INPUTS, Cover, Cube, LutNetwork, TruthTable
 from wnn2hdl.minimise import Minimised, generators, require_equal
 from wnn2hdl.minimise.circuit import MinimisedTable, minimise_table
 from wnn2hdl.synth import cache
@@ -18,18 +18,19 @@ from wnn2hdl.synth import cache
 _KIND = "tables"
 
 
-def minimise_once(table: TruthTable, effort: int) -> MinimisedTable:
+def minimise_once(table: TruthTable, effort: int, lut_inputs: int = LUT_INPUTS) -> MinimisedTable:
     """As `wnn2hdl.minimise.circuit.minimise_table`, whose result is kept in the cache on disk."""
     key = {
         "table": cache.digest(json.dumps(table.to_json())),
         "effort": str(effort),
+        "lut_inputs": str(lut_inputs),
         "code": code_digest(),
         **generators(),
     }
     kept = cache.load(_KIND, key)
     minimised = None if kept is None else _read(kept, table)
     if minimised is None:
-        minimised = minimise_table(table, effort)
+        minimised = minimise_table(table, effort, lut_inputs)
         cache.store(_KIND, key, _to_json(minimised))
     return minimised
 

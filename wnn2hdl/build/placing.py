@@ -2,24 +2,30 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from wnn2hdl.build.checking import Proofs, refutation, undecided
 from wnn2hdl.build.design import Design
-from wnn2hdl.build.emission import render, top_ports
+from wnn2hdl.build.emission import render_unpaired, top_ports
 from wnn2hdl.build.extending import add_to_report, require_outside, require_unchanged
+from wnn2hdl.build.minimising import minimise_once
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.errors import CheckError
 from wnn2hdl.files import make_folder, read_text, write_bytes, write_text
+from wnn2hdl.ir.circuit import Circuit as CircuitOfTables
+from wnn2hdl.lower.targets import Ingredients
+from wnn2hdl.minimise.circuit import minimise
 from wnn2hdl.progress import Progress
 from wnn2hdl.synth import FABRICS, SEED, Fabric, Harnessed, Mapped, Placed, harness, map_to, place_and_route
 from wnn2hdl.tools import find_yosys
 from wnn2hdl.verify.equivalence import Circuit
 from wnn2hdl.verify.proof import prove, prove_netlists, sides
+from wnn2hdl.verify.specify import care_sets
 
 _STEPS = 4
-"""Proof of the Verilog, mapping, proof of the netlist, placing and routing."""
+"""Mapping, proof of the Verilog, proof of the netlist, placing and routing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,27 +60,27 @@ def place_build(
         CheckError: files of the build were changed, or a proof fails.
         ToolError: a program is missing or failed.
     """
-    design, _, _ = open_build(folder)
+    design, _, report = open_build(folder)
     require_unchanged(folder)
     require_outside(folder, output)
     fabric = FABRICS[device]
     for program in (fabric.family.placer.nextpnr, fabric.family.placer.packer):
         program.version()
     constraints = None if pins is None else read_text(pins, "pins")
-    design = replace(design, style="equations")
-    verilog = render(design, sobel_threshold=1)[f"{design.name}.v"]
+    progress("placing and routing", 0, _STEPS)
+    written = _fewest(design, fabric, int(report["options"].get("effort", 1)))
+    design, verilog = written.design, written.verilog
+    progress("placing and routing", 1, _STEPS)
     circuits = {
         part: Circuit((verilog,), design.module(part), circuit.latency)
         for part, circuit in design.parts.items()
     }
-    progress("placing and routing", 0, _STEPS)
     unproved = _prove_verilog(design, circuits)
-    progress("placing and routing", 1, _STEPS)
+    progress("placing and routing", 2, _STEPS)
     top = design.circuit.name
     # A video core is not a function of its inputs: its circuits are proved, each by itself.
     proved = [top] if design.video is None else list(design.parts)
     mapped = {part: map_to(fabric, verilog, design.module(part)) for part in {*proved, top}}
-    progress("placing and routing", 2, _STEPS)
     unproved += _prove_netlists(design, {part: (circuits[part], mapped[part]) for part in proved})
     progress("placing and routing", 3, _STEPS)
     name = f"{design.name}_pins"
@@ -91,6 +97,7 @@ def place_build(
         "part": fabric.part,
         "circuit": top,
         "cells": asdict(mapped[top].cells),
+        "logic": written.how,
         "count": mapped[top].command,
         "proof": "UNPROVED" if unproved else "proved",
         "proved": proved,
@@ -110,6 +117,41 @@ def place_build(
     files = _write(output, design.name, fabric, mapped[top], around, placed)
     add_to_report(folder, {"placed": {device: figures}})
     return PlacedBuild(figures, files)
+
+
+@dataclass(frozen=True)
+class _Written:
+    """A design as Verilog for a fabric; ``how`` it is written, in words."""
+
+    how: str
+    design: Design
+    verilog: str
+
+
+def _fewest(design: Design, fabric: Fabric, effort: int) -> _Written:
+    """The design, written in the way that takes the fewest LUTs of the fabric.
+
+    Either its LUTs of six inputs stand as equations, which Yosys maps again, or its tables are minimised to
+    LUTs of four inputs, which stay. A pipeline, whose stages name its LUTs, has the former alone.
+    """
+    ways = {"equations": replace(design, style="equations")}
+    if design.stages is None:
+        ways["LUTs of four inputs"] = replace(design, circuit=_of_four(design, effort), style="cells")
+    written = [_Written(how, way, render_unpaired(way)) for how, way in ways.items()]
+
+    def cost(way: _Written) -> tuple[int, int]:
+        cells = map_to(fabric, way.verilog, design.module(design.circuit.name)).cells
+        return cells.luts, cells.muxes
+
+    return min(written, key=cost)
+
+
+def _of_four(design: Design, effort: int) -> CircuitOfTables:
+    """The circuit with its tables minimised to LUTs of four inputs."""
+    # In exact mode the only don't-cares are those that the lowering itself finds impossible.
+    care = care_sets(design.circuit) if design.mode == "domain" else None
+    tables = design.target.lower(Ingredients(design.model, design.edges, care, design.video))
+    return minimise(tables, effort, lambda *_: None, by=partial(minimise_once, lut_inputs=4)).circuit
 
 
 def _prove_verilog(design: Design, circuits: Mapping[str, Circuit]) -> list[str]:

@@ -19,13 +19,14 @@ LINT = """\
 _LINE_LENGTH = 110
 
 
-def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
+def verilog(part: Part, *, prefix: str, header: Sequence[str], pairs: bool = True) -> str:
     """The Verilog of a component and of the parts inside it.
 
     Args:
         part: what to write.
         prefix: what the names of all modules begin with.
         header: lines of the comment at the top of the file. The text depends on the arguments only.
+        pairs: whether two LUTs may share a LUT6_2, a cell of the 7 series.
 
     Returns:
         Verilog-2001: the parts first, each once, the component last; ports in the order of declaration. A
@@ -49,7 +50,13 @@ def verilog(part: Part, *, prefix: str, header: Sequence[str]) -> str:
         )
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header)
     return "\n".join(
-        [comment + LINT, *(_module(inner, packed(trimmed(modules[name]))) for name, inner in parts.items())]
+        [
+            comment + LINT,
+            *(
+                _module(inner, packed(module) if pairs else module)
+                for inner, module in ((inner, trimmed(modules[name])) for name, inner in parts.items())
+            ),
+        ]
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from wnn2hdl.ir import LutNetwork, TruthTable
+from wnn2hdl.ir import LUT_INPUTS, LutNetwork, TruthTable
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.minimise.espresso import Minimised, espresso
@@ -42,9 +42,13 @@ class MinimisedCircuit:
     methods: dict[str, str]
 
 
-def minimise_table(table: TruthTable, effort: int) -> MinimisedTable:
-    """Minimise one table; raises CheckError if the result differs from it on a cared-for code."""
-    mapping = map_luts(table, effort=effort)
+def minimise_table(table: TruthTable, effort: int, lut_inputs: int = LUT_INPUTS) -> MinimisedTable:
+    """Minimise one table to LUTs of so many inputs.
+
+    Raises:
+        CheckError: the result differs from the table on a cared-for code.
+    """
+    mapping = map_luts(table, effort=effort, lut_inputs=lut_inputs)
     return MinimisedTable(espresso(table), mapping.network, mapping.method)
 
 

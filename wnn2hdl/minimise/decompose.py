@@ -1,10 +1,10 @@
 """Functional decomposition into LUTs under don't-cares: Ashenhurst, Curtis, Roth and Karp, and Shannon.
 
-A *bound set* B of at most six signals is replaced by ``t`` wires, each one LUT over B. Two assignments of B
-(columns of the decomposition chart) may share the wires' value if no assignment of the other signals makes
-one ON and the other OFF: the fewest values are a colouring of the incompatible columns (Roth and Karp 1962).
-A signal of B may be read by the rest as well (non-disjoint decomposition): columns that it distinguishes need
-no other colour.
+A *bound set* B of at most as many signals as a LUT has inputs is replaced by ``t`` wires, each one LUT over
+B. Two assignments of B (columns of the decomposition chart) may share the wires' value if no assignment of
+the other signals makes one ON and the other OFF: the fewest values are a colouring of the incompatible
+columns (Roth and Karp 1962). A signal of B may be read by the rest as well (non-disjoint decomposition):
+columns that it distinguishes need no other colour.
 """
 
 import functools
@@ -65,9 +65,9 @@ def decompose(
     support = supports[rng.integers(len(supports))]
     signals = tuple(signals[position] for position in members(support))
     on, off = restrict(on, support), restrict(off, support)
-    if len(signals) <= LUT_INPUTS:
+    if len(signals) <= draft.lut_inputs:
         return draft.add(signals, _complete(on, off))
-    choices = _choices(on, off, rng)[: breadth[0] if breadth else 1]
+    choices = _choices(on, off, rng, draft.lut_inputs)[: breadth[0] if breadth else 1]
     if len(choices) == 1:
         return _apply(draft, signals, on, off, choices[0], rng, breadth[1:])
     best: tuple[tuple[int, int, int], Draft] | None = None
@@ -83,7 +83,7 @@ def decompose(
 
 
 def mux_tree(draft: Draft, signals: tuple[int, ...], on: Flags, off: Flags) -> int:
-    """As `decompose`, at any width: LUTs of six signals, selected by the others without a search."""
+    """As `decompose`, at any width: full LUTs, selected by the other signals without a search."""
     if not on.any():
         return ZERO
     if not off.any():
@@ -91,7 +91,7 @@ def mux_tree(draft: Draft, signals: tuple[int, ...], on: Flags, off: Flags) -> i
     support = minimum_supports(on, off)[0]
     signals = tuple(signals[position] for position in members(support))
     on, off = restrict(on, support), restrict(off, support)
-    if len(signals) <= LUT_INPUTS:
+    if len(signals) <= draft.lut_inputs:
         return draft.add(signals, _complete(on, off))
     select = len(signals) - 1
     low, high = (mux_tree(draft, signals[:-1], *_cofactors(on, off, select, value)) for value in (0, 1))
@@ -151,10 +151,10 @@ def _replace_bound_set(
     return decompose(draft, rest, rest_on.reshape(-1), rest_off.reshape(-1), rng, breadth)
 
 
-def _choices(on: Flags, off: Flags, rng: np.random.Generator) -> list[_Choice]:
+def _choices(on: Flags, off: Flags, rng: np.random.Generator, lut_inputs: int) -> list[_Choice]:
     """Ways to take the function apart, the least expected cost first."""
-    shannon = _shannon_choices(on, off)
-    bound = _bound_set_choices(on, off, rng, min(choice.cost for choice in shannon))
+    shannon = _shannon_choices(on, off, lut_inputs)
+    bound = _bound_set_choices(on, off, rng, min(choice.cost for choice in shannon), lut_inputs)
     # Equal bound sets are tried in random order; equal Shannon splits in a fixed one, since both halves
     # should select by the same signals for their multiplexers to merge.
     noise = [*rng.uniform(0.99, 1.0, len(bound)), *np.ones(len(shannon))]
@@ -164,25 +164,27 @@ def _choices(on: Flags, off: Flags, rng: np.random.Generator) -> list[_Choice]:
     return [choice for choice, _ in ranked]
 
 
-def _bound_set_choices(on: Flags, off: Flags, rng: np.random.Generator, limit: float) -> list[_Choice]:
+def _bound_set_choices(
+    on: Flags, off: Flags, rng: np.random.Generator, limit: float, lut_inputs: int
+) -> list[_Choice]:
     """Bound sets that may cost no more than ``limit`` and a little."""
     width = on.shape[0].bit_length() - 1
     choices: list[_Choice] = []
-    for size in (6, 5, 4):
+    for size in range(lut_inputs, lut_inputs - 3, -1):
         # One wire is the least a bound set leaves.
-        if size >= width or 1 + expected_luts(width - size + 1) > limit:
+        if size >= width or 1 + expected_luts(width - size + 1, lut_inputs) > limit:
             continue
         bounds = _bound_sets(width, size)
         if len(bounds) << width > _BOUND_SETS << 12:
             keep = max((_BOUND_SETS << 12) >> width, 8)
             bounds = tuple(bounds[x] for x in rng.choice(len(bounds), min(keep, len(bounds)), replace=False))
         conflicts = _conflicts(on, off, bounds)
-        choices += _coloured(conflicts, bounds, (), width, limit)
-        if size == LUT_INPUTS:
+        choices += _coloured(conflicts, bounds, (), width, limit, lut_inputs)
+        if size == lut_inputs:
             for position in range(size):
                 columns = np.arange(1 << size) >> position & 1
                 same = columns[:, np.newaxis] == columns
-                choices += _coloured(conflicts & same, bounds, (position,), width, limit)
+                choices += _coloured(conflicts & same, bounds, (position,), width, limit, lut_inputs)
     return choices
 
 
@@ -192,28 +194,29 @@ def _coloured(
     shared: tuple[int, ...],
     width: int,
     limit: float,
+    lut_inputs: int,
 ) -> list[_Choice]:
     cliques = _clique_sizes(conflicts)
     removed = len(bounds[0]) - len(shared)
     promising = np.argsort(cliques, kind="stable")[:_COLOURED]
-    bounded = np.array([_expected(int(clique), removed, width) for clique in cliques[promising]])
+    bounded = np.array([_expected(int(clique), removed, width, lut_inputs) for clique in cliques[promising]])
     promising = promising[bounded <= limit]
     choices = []
     for index, colours in zip(promising, _colour(conflicts[promising]), strict=True):
-        cost = _expected(int(colours.max()) + 1, removed, width)
+        cost = _expected(int(colours.max()) + 1, removed, width, lut_inputs)
         if cost < np.inf:
             bound = bounds[index]
             choices.append(_Choice(cost, bound, tuple(bound[x] for x in shared), tuple(colours.tolist())))
     return choices
 
 
-def _expected(colours: int, removed: int, width: int) -> float:
+def _expected(colours: int, removed: int, width: int, lut_inputs: int) -> float:
     """LUTs that a bound set of this many colours is expected to cost; infinite if it gains nothing."""
     wires = max(colours - 1, 1).bit_length()
-    return wires + expected_luts(width - removed + wires) if wires < removed else np.inf
+    return wires + expected_luts(width - removed + wires, lut_inputs) if wires < removed else np.inf
 
 
-def _shannon_choices(on: Flags, off: Flags) -> list[_Choice]:
+def _shannon_choices(on: Flags, off: Flags, lut_inputs: int) -> list[_Choice]:
     width = on.shape[0].bit_length() - 1
     choices = []
     for select in range(width):
@@ -221,17 +224,23 @@ def _shannon_choices(on: Flags, off: Flags) -> list[_Choice]:
         for value in (0, 1):
             one, other = _cofactors(on, off, select, value)
             sizes.append(minimum_supports(one, other)[0].bit_count())
-        # Two single LUTs, and two functions of two LUTs, meet in a dedicated multiplexer.
-        free = sizes[0] == sizes[1] and LUT_INPUTS <= sizes[0] <= LUT_INPUTS + 1
-        choices.append(_Choice(sum(map(expected_luts, sizes)) + (not free), select=select))
+        # Two single LUTs of six inputs, and two functions of two such, meet in a dedicated multiplexer.
+        free = sizes[0] == sizes[1] and lut_inputs == LUT_INPUTS <= sizes[0] <= LUT_INPUTS + 1
+        halves = sum(expected_luts(size, lut_inputs) for size in sizes)
+        choices.append(_Choice(halves + (not free), select=select))
     return choices
 
 
-def expected_luts(inputs: int) -> float:
-    """LUTs of a Shannon tree for an arbitrary function: 1, 2, 4, 8.5, 17, 34, 68 for 6 to 12 inputs."""
-    if inputs <= LUT_INPUTS:
+def expected_luts(inputs: int, lut_inputs: int = LUT_INPUTS) -> float:
+    """LUTs of a Shannon tree for an arbitrary function.
+
+    With LUTs of six inputs 1, 2, 4, 8.5, 17, 34, 68 for 6 to 12 inputs; otherwise each multiplexer is a LUT.
+    """
+    if inputs <= lut_inputs:
         return 1.0 if inputs > 1 else 0.0
-    leaves = 1 << (inputs - LUT_INPUTS)
+    leaves = 1 << (inputs - lut_inputs)
+    if lut_inputs != LUT_INPUTS:
+        return 2.0 * leaves - 1
     return leaves + leaves // 8 * 0.5 if leaves > 4 else float(leaves)
 
 

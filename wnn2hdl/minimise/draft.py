@@ -41,11 +41,12 @@ class Cell:
 
 @dataclass
 class Draft:
-    """A network of LUTs of at most six inputs over ``width`` inputs; ``outputs`` are signals."""
+    """A network of LUTs of at most ``lut_inputs`` inputs over ``width`` inputs; ``outputs`` are signals."""
 
     width: int
     cells: dict[int, Cell] = field(default_factory=dict)
     outputs: list[int] = field(default_factory=list)
+    lut_inputs: int = LUT_INPUTS
 
     def __post_init__(self) -> None:
         self._next = 1 + max(self.cells, default=self.width - 1)
@@ -151,7 +152,8 @@ class Draft:
             for group in groups:
                 merged: Cell | None = self.cells[name]
                 for inner in group:
-                    merged = composed(merged, inner, self.cells[inner]) if merged is not None else None
+                    if merged is not None:
+                        merged = composed(merged, inner, self.cells[inner], self.lut_inputs)
                 if merged is None or any(inner not in self.cells[name].fanins for inner in group):
                     continue
                 self.cells[name] = merged
@@ -162,7 +164,12 @@ class Draft:
         return changed
 
     def muxes(self) -> dict[int, tuple[int, int, int]]:
-        """The cells that can be dedicated multiplexers, with (low, high, select); lower levels first."""
+        """The cells that can be dedicated multiplexers, with (low, high, select); lower levels first.
+
+        Only LUTs of six inputs have them behind.
+        """
+        if self.lut_inputs != LUT_INPUTS:
+            return {}
         height = dict.fromkeys(self.cells, 0)
         joined: set[int] = set()
         chosen: dict[int, tuple[int, int, int]] = {}
@@ -233,11 +240,11 @@ def simplified(cell: Cell) -> Cell:
     return Cell(tuple(fanins[position] for position in ranked), np.ascontiguousarray(cube).reshape(-1))
 
 
-def composed(reader: Cell, name: int, inner: Cell) -> Cell | None:
-    """The reader with a fanin replaced by that fanin's own cell; None if it needs more than six inputs."""
+def composed(reader: Cell, name: int, inner: Cell, lut_inputs: int) -> Cell | None:
+    """The reader with a fanin replaced by that fanin's own cell; None if it needs more inputs."""
     others = [x for x in reader.fanins if x != name]
     fanins = tuple(dict.fromkeys((*others, *inner.fanins)))
-    if len(fanins) > LUT_INPUTS:
+    if len(fanins) > lut_inputs:
         return None
     codes = np.arange(1 << len(fanins))
     values = {x: (codes >> position & 1).astype(np.uint8) for position, x in enumerate(fanins)}

@@ -9,7 +9,6 @@ don't-care-based logic optimization and resynthesis", 2011, here with don't-care
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import LUT_INPUTS
 from wnn2hdl.minimise.draft import Bits, Cell, Draft, evaluate_cell
 
 # Signals tried first at each place of a new fanin set.
@@ -78,7 +77,7 @@ def _express(draft: Draft, values: dict[int, Bits], name: int, banned: int, rng:
     if columns is None:
         return False
     wanted = values[name][rows].astype(np.bool_)
-    added = separators(columns, wanted, len(base), min(LUT_INPUTS - len(base), _MAX_ADDED))
+    added = separators(columns, wanted, len(base), min(draft.lut_inputs - len(base), _MAX_ADDED))
     if added is None:
         return False
     fanins = (*base, *(candidates[x - len(base)] for x in added))

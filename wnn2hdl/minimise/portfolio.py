@@ -86,15 +86,20 @@ def generators() -> dict[str, str]:
 
 
 def map_luts(
-    table: TruthTable, *, effort: int = 1, progress: Callable[[str, int], None] | None = None
+    table: TruthTable,
+    *,
+    effort: int = 1,
+    lut_inputs: int = LUT_INPUTS,
+    progress: Callable[[str, int], None] | None = None,
 ) -> Mapping:
     """Map a table to the fewest LUTs that the effort finds; then fewest levels, then fewest multiplexers.
 
-    The result depends on table and effort only, and on the versions of `generators`.
+    The result depends on the arguments only, and on the versions of `generators`.
 
     Args:
         table: 1 to 20 inputs, any number of outputs.
         effort: 0 for sweeps over thousands of tables, 1 for everyday use, 2 and 3 for final results.
+        lut_inputs: of a LUT, 4 to 6; dedicated multiplexers are used behind LUTs of six only.
         progress: called with the method and the LUTs of the best network so far, each time it gets better.
 
     Raises:
@@ -107,17 +112,17 @@ def map_luts(
         raise InputError("no such effort", value=effort, hint="give 0, 1, 2 or 3")
     started = time.perf_counter()
     supports = [minimum_supports(x & table.care, ~x & table.care)[0].bit_count() for x in table.values.T]
-    search = _Search(table, fewest_luts(supports), progress)
-    search.offer_all(_decomposed(table, max(supports, default=0), effort))
+    search = _Search(table, fewest_luts(supports, lut_inputs), progress)
+    search.offer_all(_decomposed(table, max(supports, default=0), effort, lut_inputs))
     if not search.done and effort > 0 and search.best is not None and len(table.outputs) == 1:
-        search.offer_all(two_lut_candidates(_filled(table, search.best)[:, 0]))
+        search.offer_all(two_lut_candidates(_filled(table, search.best)[:, 0], lut_inputs))
     if not search.done and (effort > 0 or search.method == "multiplexer tree"):
         care_values = table.values & table.care[:, np.newaxis]
-        search.offer_all(truth_candidates(care_values, effort))
-        search.offer_all(care_candidates(table.values, table.care, effort))
+        search.offer_all(truth_candidates(care_values, effort, lut_inputs))
+        search.offer_all(care_candidates(table.values, table.care, effort, lut_inputs))
     if not search.done and effort > 1 and search.best is not None:
         if not table.care.all():
-            search.offer_all(truth_candidates(_filled(table, search.best), effort - 1))
+            search.offer_all(truth_candidates(_filled(table, search.best), effort - 1, lut_inputs))
         search.offer_all(network_candidates(search.best))
     if not search.done and _MOVES[effort]:
         search.offer_all(_improved(search.leaders(), table, effort))
@@ -173,28 +178,29 @@ class _Search:
                 self.progress(method, cost[0])
 
 
-def fewest_luts(supports: Sequence[int]) -> int:
-    """A lower bound: one LUT for an output of two inputs or more, two for one of seven or more.
+def fewest_luts(supports: Sequence[int], lut_inputs: int = LUT_INPUTS) -> int:
+    """A lower bound: one LUT for an output of two inputs or more, two for one of more than a LUT has.
 
     Outputs may share cells, so only the one that needs most is counted.
 
     Args:
         supports: how many inputs each output needs.
+        lut_inputs: of a LUT.
     """
-    return max((0 if size < 2 else 1 if size <= LUT_INPUTS else 2 for size in supports), default=0)
+    return max((0 if size < 2 else 1 if size <= lut_inputs else 2 for size in supports), default=0)
 
 
-def _decomposed(table: TruthTable, widest: int, effort: int) -> Iterator[tuple[str, Draft]]:
+def _decomposed(table: TruthTable, widest: int, effort: int, lut_inputs: int) -> Iterator[tuple[str, Draft]]:
     functions = [(column & table.care, ~column & table.care) for column in table.values.T]
     everything = tuple(range(len(table.inputs)))
     if widest > _MAX_DECOMPOSED[effort]:
-        draft = Draft(len(table.inputs))
+        draft = Draft(len(table.inputs), lut_inputs=lut_inputs)
         draft.outputs = [mux_tree(draft, everything, on, off) for on, off in functions]
         yield "multiplexer tree", draft
         return
     for seed, breadth in enumerate(_BREADTHS[effort]):
         rng = np.random.default_rng(seed)
-        draft = Draft(len(table.inputs))
+        draft = Draft(len(table.inputs), lut_inputs=lut_inputs)
         draft.outputs = [decompose(draft, everything, on, off, rng, breadth) for on, off in functions]
         yield "decomposition" + "".join(f" {x}" for x in breadth), draft
 

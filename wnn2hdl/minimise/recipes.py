@@ -37,7 +37,6 @@ from wnn2hdl.tools import find_abc, run_abc
 _AREA = "1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n7 2 1\n8 4 1\n"
 # The costs with which Yosys's synth_xilinx maps for this family (-luts 2:2,3,6:5,10,20).
 _YOSYS_AREA = "1 2 1\n2 2 1\n3 3 1\n4 5 1\n5 5 1\n6 5 1\n7 10 1\n8 20 1\n"
-_SIX = "1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n"
 
 _POLISH = "mfs2 -a -e; lutpack"
 _REMAP = f"strash; dch -f; if -a; {_POLISH}"
@@ -49,13 +48,15 @@ class _Recipe:
 
     Attributes:
         name: its name among the candidates.
-        script: commands of ABC; {inputs} is the number of inputs.
+        script: commands of ABC; {inputs} is the number of inputs, {luts} that of a LUT.
         most_nodes: nodes of the function's AND-inverter graph above which it is not asked for.
+        six: whether it is for LUTs of six inputs only, as one that reads the areas of wider functions.
     """
 
     name: str
     script: str
     most_nodes: float = math.inf
+    six: bool = False
 
 
 # Measured on random functions, which are the worst (12 inputs are 3,400 nodes, 14 are 12,500, 16 are 47,000):
@@ -64,33 +65,34 @@ _LIGHT, _MEDIUM, _HEAVY = 50_000, 12_000, 2_000
 
 # Effort e runs the first e + 1 groups.
 _FROM_TRUTH = (
-    (_Recipe("lutmin", "lutmin -K 6"),),
+    (_Recipe("lutmin", "lutmin -K {luts}"),),
     (
         _Recipe(
             "yosys",
             "read_lut yosys.lut; strash; &get -n; &fraig -x; &put; scorr; dc2; dch -f; if; mfs2",
             _LIGHT,
+            six=True,
         ),
-        _Recipe("dch if", f"read_lut six.lut; strash; dch; if -a; {_POLISH}", _LIGHT),
-        _Recipe("wide if", "read_lut area.lut; strash; dch -f; if -a", _LIGHT),
-        _Recipe("lutmin again", f"read_lut six.lut; lutmin -K 6; {_POLISH}; {_REMAP}", _LIGHT),
+        _Recipe("dch if", f"read_lut plain.lut; strash; dch; if -a; {_POLISH}", _LIGHT),
+        _Recipe("wide if", "read_lut area.lut; strash; dch -f; if -a", _LIGHT, six=True),
+        _Recipe("lutmin again", f"read_lut plain.lut; lutmin -K {{luts}}; {_POLISH}; {_REMAP}", _LIGHT),
         _Recipe(
-            "ttopt", f"read_lut six.lut; strash; &get -n; &ttopt -I {{inputs}} -O 1; &put; {_REMAP}", _LIGHT
+            "ttopt", f"read_lut plain.lut; strash; &get -n; &ttopt -I {{inputs}} -O 1; &put; {_REMAP}", _LIGHT
         ),
     ),
     (
-        _Recipe("fx", f"read_lut six.lut; collapse; sop; fx; {_REMAP}; {_REMAP}", _MEDIUM),
-        _Recipe("compress", f"read_lut six.lut; strash; dc2; dc2; ifraig; {_REMAP}; {_REMAP}", _MEDIUM),
+        _Recipe("fx", f"read_lut plain.lut; collapse; sop; fx; {_REMAP}; {_REMAP}", _MEDIUM),
+        _Recipe("compress", f"read_lut plain.lut; strash; dc2; dc2; ifraig; {_REMAP}; {_REMAP}", _MEDIUM),
         _Recipe(
             "deepsyn",
-            f"read_lut six.lut; strash; &get -n; &deepsyn -I 1 -J 3; &put; {_REMAP}; {_REMAP}",
+            f"read_lut plain.lut; strash; &get -n; &deepsyn -I 1 -J 3; &put; {_REMAP}; {_REMAP}",
             _HEAVY,
         ),
     ),
     (
         _Recipe(
             "deepsyn 20",
-            f"read_lut six.lut; strash; &get -n; &deepsyn -I 2 -J 20; &put; {_REMAP}; {_REMAP}",
+            f"read_lut plain.lut; strash; &get -n; &deepsyn -I 2 -J 20; &put; {_REMAP}; {_REMAP}",
             _HEAVY,
         ),
     ),
@@ -99,11 +101,9 @@ _FROM_TRUTH = (
 _FROM_CARE = ((), (1,), (1, 8), (1, 8, 30))
 # From a network that is mapped already.
 _FROM_NETWORK = (
-    ("polish", f"read_lut six.lut; {_POLISH}"),
-    ("remap", f"read_lut six.lut; {_REMAP}; {_REMAP}"),
+    ("polish", f"read_lut plain.lut; {_POLISH}"),
+    ("remap", f"read_lut plain.lut; {_REMAP}; {_REMAP}"),
 )
-# Inputs that two LUTs can read between them, one pin being the wire that joins them.
-_MAX_TWO_LUT_INPUTS = 2 * LUT_INPUTS - 1
 # Codes above which the text of the care set costs more than it gains: at the limit one attempt takes 7 s.
 _MAX_PLA_ROWS = 1 << 14
 # Seconds that no recipe comes near to; an error, never another result.
@@ -111,7 +111,9 @@ _SAFETY_NET = 3600.0
 _NODES = re.compile(r"\band = *(\d+)")
 
 
-def truth_candidates(truth: NDArray[np.bool_], effort: int) -> Iterator[tuple[str, Draft]]:
+def truth_candidates(
+    truth: NDArray[np.bool_], effort: int, lut_inputs: int = LUT_INPUTS
+) -> Iterator[tuple[str, Draft]]:
     """Networks for a completely specified function, bool ``[2**n, outputs]``, each with its recipe's name.
 
     The networks are right only as far as ABC is; the caller checks them.
@@ -122,15 +124,15 @@ def truth_candidates(truth: NDArray[np.bool_], effort: int) -> Iterator[tuple[st
     recipes = [recipe for level in _FROM_TRUTH[: effort + 1] for recipe in level]
     nodes = _nodes(read, files) if effort else 0
     scripts = [
-        (recipe.name, f"{read}; {recipe.script.format(inputs=width)}")
+        (recipe.name, f"{read}; {recipe.script.format(inputs=width, luts=lut_inputs)}")
         for recipe in recipes
-        if nodes <= recipe.most_nodes
+        if nodes <= recipe.most_nodes and (lut_inputs == LUT_INPUTS or not recipe.six)
     ]
-    yield from _run(scripts, files, width)
+    yield from _run(scripts, files, width, lut_inputs)
 
 
 def care_candidates(
-    values: NDArray[np.bool_], care: NDArray[np.bool_], effort: int
+    values: NDArray[np.bool_], care: NDArray[np.bool_], effort: int, lut_inputs: int = LUT_INPUTS
 ) -> Iterator[tuple[str, Draft]]:
     """As `truth_candidates`, for values that count only where ``care``, bool ``[2**n]``."""
     codes = np.flatnonzero(care)
@@ -141,19 +143,19 @@ def care_candidates(
     rows = [f"{_digits(code)} {_digits(wanted)}" for code, wanted in zip(bits, values[codes], strict=True)]
     pla = f".i {width}\n.o {values.shape[1]}\n.type fr\n" + "\n".join(rows) + "\n.e\n"
     scripts = [
-        (f"decpla {attempts}", f"read_lut six.lut; &decpla -K {attempts} f.pla; &put; {_REMAP}")
+        (f"decpla {attempts}", f"read_lut plain.lut; &decpla -K {attempts} f.pla; &put; {_REMAP}")
         for attempts in _FROM_CARE[effort]
     ]
-    yield from _run(scripts, {"f.pla": pla}, width)
+    yield from _run(scripts, {"f.pla": pla}, width, lut_inputs)
 
 
 def network_candidates(draft: Draft) -> Iterator[tuple[str, Draft]]:
     """Networks equal to the draft on all codes, made from it."""
     scripts = [(name, f"read_blif f.blif; {script}") for name, script in _FROM_NETWORK]
-    yield from _run(scripts, {"f.blif": to_blif(draft)}, draft.width)
+    yield from _run(scripts, {"f.blif": to_blif(draft)}, draft.width, draft.lut_inputs)
 
 
-def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
+def two_lut_candidates(truth: NDArray[np.bool_], lut_inputs: int = LUT_INPUTS) -> Iterator[tuple[str, Draft]]:
     """The two LUTs that make a completely specified function, bool ``[2**n]``, if there are such two.
 
     ABC's ``lutexact`` decides this by SAT. Measured (yosys-abc of pyosys 0.70): for two LUTs it takes under
@@ -164,14 +166,15 @@ def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
     """
     support = members(minimum_supports(truth, ~truth)[0])
     width = len(support)
-    if not LUT_INPUTS < width <= _MAX_TWO_LUT_INPUTS:
+    # One pin of the two LUTs is the wire that joins them.
+    if not lut_inputs < width <= 2 * lut_inputs - 1:
         return
     column = restrict(truth, sum(1 << x for x in support))
     digits = f"{pack_contents(column):0{len(column) // 4}x}"
     # ABC names the file after the first 16 digits; if there is no solution, there is no file to read.
-    script = f"lutexact -d -N {width} -M 2 -K {LUT_INPUTS} {digits}; read_blif {digits[:16]}_.blif"
-    for method, small in _run([("lutexact", script)], {}, width):
-        draft = Draft(truth.shape[0].bit_length() - 1)
+    script = f"lutexact -d -N {width} -M 2 -K {lut_inputs} {digits}; read_blif {digits[:16]}_.blif"
+    for method, small in _run([("lutexact", script)], {}, width, lut_inputs):
+        draft = Draft(truth.shape[0].bit_length() - 1, lut_inputs=lut_inputs)
         signals = dict(enumerate(support))
         for number in small.order():
             cell = small.cells[number]
@@ -181,11 +184,11 @@ def two_lut_candidates(truth: NDArray[np.bool_]) -> Iterator[tuple[str, Draft]]:
 
 
 def _run(
-    scripts: Sequence[tuple[str, str]], files: dict[str, str], width: int
+    scripts: Sequence[tuple[str, str]], files: dict[str, str], width: int, lut_inputs: int
 ) -> Iterator[tuple[str, Draft]]:
     """What each script makes of the files, one process each, started when it is asked for."""
     find_abc()  # a missing ABC is reported to the user; a recipe that fails is not
-    with _folder(files) as folder:
+    with _folder(files, lut_inputs) as folder:
         for number, (method, script) in enumerate(scripts):
             result = folder / f"{number}.blif"
             try:
@@ -194,7 +197,7 @@ def _run(
                 raise
             except ToolError:
                 continue  # ABC refuses some functions, and asserts on others
-            yield method, from_blif(result.read_text(encoding="ascii"), width)
+            yield method, from_blif(result.read_text(encoding="ascii"), width, lut_inputs)
 
 
 def _nodes(script: str, files: dict[str, str]) -> int:
@@ -208,11 +211,12 @@ def _nodes(script: str, files: dict[str, str]) -> int:
 
 
 @contextmanager
-def _folder(files: dict[str, str]) -> Iterator[Path]:
+def _folder(files: dict[str, str], lut_inputs: int = LUT_INPUTS) -> Iterator[Path]:
     """A temporary folder with these files and the LUT libraries."""
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as name:
         folder = Path(name)
-        for file, text in {**files, "six.lut": _SIX, "area.lut": _AREA, "yosys.lut": _YOSYS_AREA}.items():
+        plain = "".join(f"{inputs} 1 1\n" for inputs in range(1, lut_inputs + 1))
+        for file, text in {**files, "plain.lut": plain, "area.lut": _AREA, "yosys.lut": _YOSYS_AREA}.items():
             (folder / file).write_text(text, encoding="ascii")
         yield folder
 
@@ -243,9 +247,9 @@ def to_blif(draft: Draft) -> str:
     return "\n".join([*lines, ".end", ""])
 
 
-def from_blif(text: str, width: int) -> Draft:
+def from_blif(text: str, width: int, lut_inputs: int = LUT_INPUTS) -> Draft:
     """Read what ABC wrote; inputs and outputs are taken in the order of their declaration."""
-    draft = Draft(width)
+    draft = Draft(width, lut_inputs=lut_inputs)
     tables: dict[str, tuple[list[str], list[str]]] = {}
     inputs: list[str] = []
     outputs: list[str] = []
@@ -286,7 +290,7 @@ def _contents(width: int, rows: list[str]) -> Column:
 
 
 def _add_wide(draft: Draft, fanins: tuple[int, ...], contents: Column) -> int:
-    if len(fanins) <= LUT_INPUTS:
+    if len(fanins) <= draft.lut_inputs:
         return draft.add(fanins, contents)
     low, high = (_add_wide(draft, fanins[:-1], half) for half in np.split(contents, 2))
     return draft.add_mux(low, high, fanins[-1])

@@ -44,7 +44,7 @@ def placed_notes(report: Mapping[str, Any]) -> list[str]:
         + ", ".join(
             f"{use['used']:,} of {use['available']:,} {kind}" for kind, use in figures["utilisation"].items()
         )
-        + f"; after {figures['count']}, by "
+        + f"; {figures['logic']} after {figures['count']}, by "
         + ", ".join(f"{tool} {version}" for tool, version in figures["tools"].items())
         + "."
         for device, figures in report.get("placed", {}).items()

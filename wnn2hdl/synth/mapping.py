@@ -14,11 +14,26 @@ from wnn2hdl.tools import find_yosys
 
 _TIMEOUT = 1800.0
 
-# LUT cells that stand in the design are turned into the family's own by way of modules that no synthesis
-# knows, so that none restructures them; their names are those of 7-series cells, which differ in their pins.
+# LUT cells of up to four inputs that stand in the design are turned into the family's own by way of modules
+# that no synthesis knows, so that none restructures them; their names are those of 7-series cells, which
+# differ in their pins. What the family has no such cell for becomes logic.
 _LUT = """\
 module LUT{inputs} #(parameter [{last}:0] INIT = 0) (output O, input {pins});
 KEEP #(.INIT({{{copies}{{INIT}}}})) kept (.O(O), {connections});
+endmodule
+"""
+_WIDER = """\
+module LUT5 #(parameter [31:0] INIT = 0) (output O, input I0, I1, I2, I3, I4);
+assign O = INIT[{I4, I3, I2, I1, I0}];
+endmodule
+module LUT6 #(parameter [63:0] INIT = 0) (output O, input I0, I1, I2, I3, I4, I5);
+assign O = INIT[{I5, I4, I3, I2, I1, I0}];
+endmodule
+module MUXF7 (output O, input I0, I1, S);
+assign O = S ? I1 : I0;
+endmodule
+module MUXF8 (output O, input I0, I1, S);
+assign O = S ? I1 : I0;
 endmodule
 """
 _KEEP = """\
@@ -96,8 +111,8 @@ def map_to(fabric: Fabric, verilog: str, top: str) -> Mapped:
 
     Args:
         fabric: the FPGA.
-        verilog: the source, Verilog-2005, complete but for LUT1 to LUT4 of the 7 series, which become one LUT
-            each.
+        verilog: the source, Verilog-2005, complete but for LUT and MUXF cells of the 7 series: a LUT of up to
+            four inputs stays one.
         top: the name of the top module.
 
     Raises:
@@ -142,7 +157,7 @@ def _map(fabric: Fabric, verilog: str, top: str, command: str) -> Mapped:
 
 
 def _luts() -> str:
-    texts = []
+    texts = [_WIDER]
     for inputs in range(1, 5):
         pins = ", ".join(f"I{pin}" for pin in range(inputs))
         connections = ", ".join(f".I{pin}(I{pin})" if pin < inputs else f".I{pin}(1'b0)" for pin in range(4))
