@@ -32,9 +32,9 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The efforts of all calls of the minimiser."""
     efforts: list[int] = []
 
-    def counted(table: TruthTable, effort: int) -> MinimisedTable:
+    def counted(table: TruthTable, effort: int, lut_inputs: int) -> MinimisedTable:
         efforts.append(effort)
-        return minimise_table(table, effort)
+        return minimise_table(table, effort, lut_inputs)
 
     monkeypatch.setattr(minimising, "minimise_table", counted)
     return efforts
@@ -99,3 +99,10 @@ def test_a_wrong_entry_changes_no_answer(
     monkeypatch.setattr(cache, "load", spoiled)
     assert minimise_once(table, 0) == first
     assert calls == [0, 0]
+
+
+def test_luts_of_another_size_are_not_taken_for_these(table: TruthTable) -> None:
+    six = minimise_once(table, 0).network
+    four = minimise_once(table, 0, lut_inputs=4).network
+    assert max(len(lut.inputs) for lut in four.luts) <= 4 < max(len(lut.inputs) for lut in six.luts)
+    assert minimise_once(table, 0).network == six

@@ -37,6 +37,7 @@ def test_figures_join_the_report_and_the_manifest_stays_true(changeable: Path, t
     assert report["placed"] == {"ecp5-25k": json.loads(json.dumps(done.figures))}
     assert done.figures["proof"] == "proved"
     assert done.figures["harness"] == "registers"
+    assert done.figures["cells"]["luts"] > 0
     assert check_manifest(changeable) == []
     shown = (changeable / "report.md").read_text()
     clock = f"{done.figures['fmax_mhz']:.1f} MHz"

@@ -99,8 +99,8 @@ def test_multiplexers_are_recognised_in_every_order_of_pins() -> None:
 
 def test_six_inputs_are_the_limit_of_composition() -> None:
     reader = Cell((0, 1, 9), random_contents(3))
-    assert composed(reader, 9, Cell((2, 3, 4, 5), random_contents(4, 1))) is not None
-    assert composed(reader, 9, Cell((2, 3, 4, 5, 6), random_contents(5, 1))) is None
+    assert composed(reader, 9, Cell((2, 3, 4, 5), random_contents(4, 1)), 6) is not None
+    assert composed(reader, 9, Cell((2, 3, 4, 5, 6), random_contents(5, 1)), 6) is None
 
 
 def test_names_of_the_table_are_not_taken_by_cells() -> None:

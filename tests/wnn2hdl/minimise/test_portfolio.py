@@ -111,7 +111,7 @@ def test_a_wrong_candidate_never_wins(monkeypatch: pytest.MonkeyPatch) -> None:
 
     table = random_table(7, 1, 1.0, seed=2)
     monkeypatch.setattr(portfolio, "truth_candidates", wrong)
-    monkeypatch.setattr(portfolio, "fewest_luts", lambda _: 0)
+    monkeypatch.setattr(portfolio, "fewest_luts", lambda *_: 0)
     mapping = map_luts(table, effort=1)
     assert portfolio.Candidate("wrong", None) in mapping.candidates
     assert is_right(table, mapping.network)
@@ -136,3 +136,14 @@ def test_progress_tells_each_improvement() -> None:
 def test_an_unknown_effort_is_refused() -> None:
     with pytest.raises(InputError, match="no such effort: 4; give 0, 1, 2 or 3"):
         map_luts(random_table(3, 1, 1.0, 0), effort=4)
+
+
+@pytest.mark.parametrize("care", [1.0, 0.3])
+def test_luts_of_four_inputs(care: float) -> None:
+    table = random_table(7, 2, care, seed=4)
+    network = map_luts(table, lut_inputs=4).network
+    assert is_right(table, network)
+    assert max(len(lut.inputs) for lut in network.luts) == 4
+    assert not network.muxes
+    # For each output a tree of eight LUTs and seven that select is always enough.
+    assert len(network.luts) <= 2 * 15
