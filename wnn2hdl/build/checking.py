@@ -9,7 +9,7 @@ from typing import Any
 from wnn2hdl.build import remembered
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.emission import SOBEL, Files, baseline_module
-from wnn2hdl.build.simulating import simulate_apart, simulate_parts
+from wnn2hdl.build.simulating import simulate_apart, simulate_parts, simulated_inputs
 from wnn2hdl.build.streaming import sample_frames
 from wnn2hdl.files import read_text
 from wnn2hdl.progress import Progress
@@ -118,7 +118,8 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     netlists = Proofs(pairs, afresh=afresh)
     if netlists.due:
         widths = {part: circuit.widths for part, circuit in design.parts.items()}
-        netlists.note(prove_netlists({part: pairs[part] for part in netlists.due}, widths))
+        gates = {part for part, claim in specification.claims.items() if claim.gates is not None}
+        netlists.note(prove_netlists({part: pairs[part] for part in netlists.due}, widths, gates))
     failures = [
         mismatch,
         refutation(verilog.found, "Verilog"),
@@ -169,8 +170,8 @@ class _Simulations:
         self.keys: dict[str, remembered.Key] = {}
         for part, circuit in design.parts.items():
             claim = claims.get(part)
-            if claim is not None and claim.stimulus is not None:
-                inputs = claim.stimulus()
+            inputs = None if claim is None else simulated_inputs(design, claim)
+            if claim is not None and inputs is not None:
                 answers = claim.answers(inputs)
                 counts[part] = len(next(iter(inputs.values())))
                 self.keys[part] = remembered.simulation_key(circuit, design.style, inputs, answers)

@@ -20,7 +20,7 @@ from wnn2hdl.errors import CheckError
 from wnn2hdl.files import write_json, write_text
 from wnn2hdl.images import write_png
 from wnn2hdl.ir.identifiers import name_from, require_name
-from wnn2hdl.ir.models import AnyModel
+from wnn2hdl.ir.models import AnyModel, LogicModel
 from wnn2hdl.progress import Progress
 from wnn2hdl.report import (
     BuildReport,
@@ -212,8 +212,11 @@ def _pruned(planned: Plan) -> dict[str, int | None]:
 
 def method(design: Design, checked: Checked) -> str:
     """How a design was checked against its model, in words."""
-    shell = "; the registers and memories of the video core around them simulated"
-    return checked.method if design.video is None else f"{checked.method}{shell}"
+    if design.video is not None:
+        return f"{checked.method}; the registers and memories of the video core around them simulated"
+    if isinstance(design.model, LogicModel) and not checked.vectors:
+        return f"{checked.method}; too large to be simulated, so evaluated on samples instead"
+    return checked.method
 
 
 def _care(design: Design, coverage: float | None) -> Care:

@@ -18,6 +18,7 @@ from wnn2hdl.evaluation.rows import feature_bits, require_vector_classifier, sca
 from wnn2hdl.ir import (
     WINDOW_CODES,
     EdgeFilter,
+    LutNetwork,
     Neighbourhood,
     PictureEncoder,
     Style,
@@ -28,6 +29,7 @@ from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.features import FixedPoint, Thermometer
 from wnn2hdl.ir.models import AnyModel, LogicModel
+from wnn2hdl.ir.packing import packed_luts
 from wnn2hdl.ir.video import MAX_CLOCK, Answer
 from wnn2hdl.lower.table import care_set
 from wnn2hdl.lower.targets import Ingredients, Target, target_for
@@ -192,6 +194,10 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
     lowered = target.lower(Ingredients(model, edges, care, video))
     require_capacity(estimated_luts(lowered), options.max_luts)
     minimised = minimise(lowered, options.effort, progress, by=minimise_once)
+    if isinstance(model, LogicModel):
+        tables = (table.function for table in minimised.circuit.tables().values())
+        luts = sum(packed_luts(table) for table in tables if isinstance(table, LutNetwork))
+        require_capacity(luts, options.max_luts)
     design = Design(
         model,
         edges,

@@ -6,8 +6,9 @@ from typing import Any
 from wnn2hdl.errors import ModelFileError
 from wnn2hdl.ir.care import care_from_json
 from wnn2hdl.ir.circuit import Care, Circuit, Instance, Node
+from wnn2hdl.ir.models.logic import LogicModel
 from wnn2hdl.ir.network import LutNetwork
-from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
+from wnn2hdl.ir.nodes import ArgMax, Function, Match, Register, Sum, Table, Threshold
 from wnn2hdl.ir.tables import TruthTable
 from wnn2hdl.ir.wires import Port, Slice, word_from_json, word_to_json
 
@@ -61,8 +62,7 @@ def _node_to_json(node: Node) -> dict[str, Any]:
     data: dict[str, Any] = {"kind": node.kind, "name": node.name}
     match node:
         case Table(word=word, function=function):
-            form = "network" if isinstance(function, LutNetwork) else "table"
-            return data | {"word": word_to_json(word), form: function.to_json()}
+            return data | {"word": word_to_json(word), _FORMS[type(function)]: function.to_json()}
         case Threshold(word=word, at_least=at_least):
             return data | {"word": word_to_json(word), "at_least": at_least}
         case Sum(word=word, weights=weights, offset=offset, modulus_bits=bits):
@@ -79,9 +79,11 @@ def _node_to_json(node: Node) -> dict[str, Any]:
             return data | {"circuit": circuit.name, "inputs": connections}
 
 
+_FORMS: Mapping[type[Function], str] = {TruthTable: "table", LogicModel: "gates", LutNetwork: "network"}
+
+
 def _table(data: Mapping[str, Any]) -> Table:
-    mapped = "network" in data
-    function = LutNetwork.from_json(data["network"]) if mapped else TruthTable.from_json(data["table"])
+    (function,) = (form.from_json(data[key]) for form, key in _FORMS.items() if key in data)
     return Table(data["name"], word_from_json(data["word"]), function)
 
 

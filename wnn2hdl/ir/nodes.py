@@ -11,6 +11,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from wnn2hdl.ir.codes import bits_to_codes, codes_to_bits
+from wnn2hdl.ir.models.logic import LogicModel
 from wnn2hdl.ir.network import LutNetwork
 from wnn2hdl.ir.tables import TruthTable
 from wnn2hdl.ir.wires import Bits, Word, width_of
@@ -21,13 +22,13 @@ MAX_NUMBER = 63
 MAX_CYCLES = 1 << 16
 """The longest delay."""
 
-Function = TruthTable | LutNetwork
-"""What a `Table` computes: as it was extracted, or mapped to LUTs."""
+Function = TruthTable | LogicModel | LutNetwork
+"""What a `Table` computes: as it was extracted, as gates, or mapped to LUTs."""
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A Boolean function of at most `MAX_TABLE_INPUTS` inputs and several outputs.
+    """A Boolean function of several outputs; as a truth table it has at most `MAX_TABLE_INPUTS` inputs.
 
     Attributes:
         name: of the node and of the net it drives, one bit for each output of the function.
@@ -63,6 +64,8 @@ class Table:
         """The nets that the node drives, from the values of the words that it reads."""
         if isinstance(self.function, LutNetwork):
             return {self.name: self.function.evaluate_bits(values[0])}
+        if isinstance(self.function, LogicModel):
+            return {self.name: self.function.evaluate(values[0])}
         return {self.name: self.function.evaluate(bits_to_codes(values[0]))}
 
 

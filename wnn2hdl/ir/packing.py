@@ -1,6 +1,6 @@
 """Which look-up tables share a LUT6_2: two that read at most five different signals between them."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Container, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -8,6 +8,14 @@ from wnn2hdl.ir.network import Lut, LutNetwork
 
 SHARED_INPUTS = 5
 """Signals that the two functions of a LUT6_2 may read between them (Xilinx UG953)."""
+
+
+_MANY = 5_000
+"""Tables above which only those of one level are paired: of two such none leads to the other, so that no
+graph is searched."""
+
+_LOOKED_AT = 16
+"""Readers of a signal, and tables of a size, that a table of so many looks at."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +36,8 @@ class Gate:
 def pairs(gates: Sequence[Gate]) -> list[tuple[int, int]]:
     """Pairs of look-up tables that can share a LUT6_2, each table in at most one pair.
 
-    A greedy matching: tables with the fewest partners choose first. No pair closes a loop through a cell, not
+    A greedy matching: tables with the fewest partners choose first, or of very many the first of each level,
+    which find fewer partners. No pair closes a loop through a cell, not
     even one that no signal takes, since tools that do not look inside a cell would see it.
 
     Args:
@@ -37,7 +46,10 @@ def pairs(gates: Sequence[Gate]) -> list[tuple[int, int]]:
     Returns:
         Indices into ``gates``, the lower one first, ascending. They depend on the arguments only.
     """
-    partners = _partners(gates)
+    small = [i for i, gate in enumerate(gates) if gate.is_lut and 0 < len(gate.reads) <= SHARED_INPUTS]
+    if len(small) > _MANY:
+        return sorted(_pairs_by_level(gates, small))
+    partners = _partners(gates, small)
     graph = _Graph(gates)
     free = set(partners)
     chosen: list[tuple[int, int]] = []
@@ -64,9 +76,61 @@ def packed_luts(network: LutNetwork) -> int:
     return len(network.luts) - len(pairs(gates))
 
 
-def _partners(gates: Sequence[Gate]) -> dict[int, list[int]]:
+def _pairs_by_level(gates: Sequence[Gate], small: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Pairs of tables of one level; each takes the partner that reads most of what it reads itself."""
+    by_level: dict[int, list[int]] = {}
+    levels = _levels(gates)
+    for i in small:
+        by_level.setdefault(levels[i], []).append(i)
+    for level in by_level.values():
+        free = dict.fromkeys(level)
+        by_signal: dict[Hashable, list[int]] = {}
+        by_size: dict[int, list[int]] = {}
+        # Backwards, so that the last ones are the nearest.
+        for i in reversed(level):
+            by_size.setdefault(len(gates[i].reads), []).append(i)
+            for signal in gates[i].reads:
+                by_signal.setdefault(signal, []).append(i)
+        for i in level:
+            if i not in free:
+                continue
+            del free[i]
+            reads = gates[i].reads
+            lists = [by_signal[signal] for signal in reads]
+            lists += [by_size.get(size, []) for size in range(SHARED_INPUTS - len(reads), 0, -1)]
+            found = [x for others in lists for x in _nearest(others, free)]
+            fitting = [x for x in found if len(gates[x].reads | reads) <= SHARED_INPUTS]
+            if fitting:
+                # Large tables have fewer partners to choose from.
+                partner = max(fitting, key=lambda x: (len(gates[x].reads), len(gates[x].reads & reads), -x))
+                del free[partner]
+                yield i, partner
+
+
+def _nearest(tables: list[int], free: Container[int]) -> list[int]:
+    """The last free ones of a list, from whose end those that are not free are dropped."""
+    while tables and tables[-1] not in free:
+        tables.pop()
+    return [x for x in tables[-_LOOKED_AT:] if x in free]
+
+
+def _levels(gates: Sequence[Gate]) -> list[int]:
+    """Cells on the longest way to each cell, which is one of them."""
+    drivers = {signal: i for i, gate in enumerate(gates) for signal in gate.drives}
+    levels = [0] * len(gates)
+    for root in range(len(gates)):
+        stack = [] if levels[root] else [root]
+        while stack:
+            read = [drivers[x] for x in gates[stack[-1]].reads if x in drivers]
+            waiting = [x for x in read if not levels[x]]
+            if not waiting:
+                levels[stack.pop()] = 1 + max((levels[x] for x in read), default=0)
+            stack += waiting
+    return levels
+
+
+def _partners(gates: Sequence[Gate], small: Sequence[int]) -> dict[int, list[int]]:
     """For each table the tables that read few enough other signals, ascending."""
-    small = [i for i, gate in enumerate(gates) if gate.is_lut and 0 < len(gate.reads) <= SHARED_INPUTS]
     partners: dict[int, set[int]] = {i: set() for i in small}
     by_signal: dict[Hashable, list[int]] = {}
     for i in small:

@@ -17,9 +17,9 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel, NetworkModel, TableSumModel
+from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
 from wnn2hdl.ir.video import MAX_CLASSES
-from wnn2hdl.lower import deforestation, structural, sums
+from wnn2hdl.lower import deforestation, gates, structural, sums
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +97,8 @@ def _neighbourhood(of: Ingredients) -> Circuit:
 
 
 def _network(of: Ingredients) -> Circuit:
+    if isinstance(of.model, LogicModel):
+        return gates.network(of.model)
     if isinstance(of.model, TableSumModel):
         return sums.network(of.model)
     assert isinstance(of.model, NetworkModel)
@@ -118,6 +120,8 @@ def _reads_neighbours(model: AnyModel) -> bool:
 
 
 def _is_network(model: AnyModel) -> bool:
+    if isinstance(model, LogicModel):
+        return True
     if isinstance(model, TableSumModel):
         return isinstance(model.encoder, Words)
     return isinstance(model, NetworkModel) and isinstance(model.encoder, FeatureEncoder)
@@ -125,6 +129,8 @@ def _is_network(model: AnyModel) -> bool:
 
 def _reads(model: AnyModel) -> str:
     """What goes into a model, for a message."""
+    if isinstance(model, LogicModel):
+        return "bits"
     if _reads_pixels(model):
         return "single pixels"
     return "a pixel's neighbours" if _reads_neighbours(model) else "features"
@@ -159,7 +165,7 @@ TARGETS: Mapping[str, Target] = {
         ),
         Target(
             "network",
-            "A whole network: encoder, tables, votes and winner",
+            "A whole network: encoder, tables, votes and winner; or gates",
             _network,
             _is_network,
             classifies=False,

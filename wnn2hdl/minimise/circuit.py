@@ -1,12 +1,14 @@
-"""The minimising pass: every truth table of a circuit becomes a network of LUTs."""
+"""The minimising pass: every truth table, and every network of gates, becomes a network of LUTs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from wnn2hdl.ir import LUT_INPUTS, LutNetwork, TruthTable
 from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.minimise.espresso import Minimised, espresso
+from wnn2hdl.minimise.gates import map_gates
 from wnn2hdl.minimise.portfolio import map_luts
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.tools import in_parallel
@@ -33,7 +35,7 @@ class MinimisedCircuit:
 
     Attributes:
         circuit: the circuit.
-        covers: the two-level cover of each table, by the names of `Circuit.tables`.
+        covers: the two-level cover of each truth table, by the names of `Circuit.tables`.
         methods: how each network was found, by the same names.
     """
 
@@ -61,7 +63,7 @@ def minimise(
     """Minimise the tables of a circuit side by side; what they give on cared-for inputs stays as it is.
 
     Args:
-        circuit: its tables are truth tables.
+        circuit: its tables are truth tables, or gates, which are mapped and not checked.
         effort: 0 to 3, how much work is put into each table.
         progress: reports each table.
         by: what minimises a table, given the effort.
@@ -82,6 +84,10 @@ def minimise(
     covers = {name: found[name].cover for name in names}
     methods = {name: found[name].method for name in names}
     mapped = {id(tables[name]): replace(tables[name], function=found[name].network) for name in names}
+    for name, table in tables.items():
+        if isinstance(table.function, LogicModel):
+            network, methods[name] = map_gates(table.function, effort, progress)
+            mapped[id(table)] = replace(table, function=network)
 
     def change(definition: Circuit) -> Circuit:
         nodes = (mapped.get(id(node), node) if isinstance(node, Table) else node for node in definition.nodes)

@@ -19,7 +19,6 @@ from wnn2hdl.ir import (
     Lut,
     LutNetwork,
     Mux,
-    TruthTable,
     look_up,
     pack_contents,
 )
@@ -193,11 +192,11 @@ class Draft:
         depth = max((level.get(x, 0) for x in self.outputs), default=0)
         return len(order) - len(muxes), depth, len(muxes)
 
-    def network(self, table: TruthTable) -> LutNetwork:
-        """The finished network with the table's input and output names."""
-        names = dict(enumerate(table.inputs))
+    def network(self, inputs: tuple[str, ...], outputs: tuple[str, ...]) -> LutNetwork:
+        """The finished network with these names of inputs and outputs."""
+        names = dict(enumerate(inputs))
         names[ZERO], names[ONE] = CONSTANTS
-        fresh = _fresh_names({*table.inputs, *table.outputs})
+        fresh = _fresh_names({*inputs, *outputs})
         muxes = self.muxes()
         cells: list[Lut | Mux] = []
         for number in self.order():
@@ -208,8 +207,8 @@ class Draft:
             else:
                 fanins = tuple(names[x] for x in cell.fanins)
                 cells.append(Lut(names[number], fanins, pack_contents(cell.contents)))
-        outputs = tuple(zip(table.outputs, (names[x] for x in self.outputs), strict=True))
-        return LutNetwork(table.inputs, tuple(cells), outputs)
+        driven = tuple(zip(outputs, (names[x] for x in self.outputs), strict=True))
+        return LutNetwork(inputs, tuple(cells), driven)
 
 
 def evaluate_cell(cell: Cell, values: dict[int, Column]) -> Column:

@@ -128,7 +128,7 @@ def map_luts(
         search.offer_all(_improved(search.leaders(), table, effort))
     if search.best is None:
         raise CheckError("no way of mapping gave a right network", value=f"{len(table.inputs)} inputs")
-    network = search.best.network(table)
+    network = search.best.network(table.inputs, table.outputs)
     require_equal(table, network, "the LUT network")
     return Mapping(network, search.method, time.perf_counter() - started, tuple(search.candidates))
 
@@ -164,7 +164,7 @@ class _Search:
 
     def offer(self, method: str, draft: Draft) -> None:
         draft.sweep()
-        if wrong_codes(self.table, draft.network(self.table)).size:
+        if wrong_codes(self.table, draft.network(self.table.inputs, self.table.outputs)).size:
             self.candidates.append(Candidate(method, None))
             return
         cost = draft.cost()
@@ -207,7 +207,7 @@ def _decomposed(table: TruthTable, widest: int, effort: int, lut_inputs: int) ->
 
 def _filled(table: TruthTable, draft: Draft) -> NDArray[np.bool_]:
     """The values that the draft gives all codes, don't-cares as well."""
-    return draft.network(table).evaluate(np.arange(len(table.care)))
+    return draft.network(table.inputs, table.outputs).evaluate(np.arange(len(table.care)))
 
 
 def _improved(drafts: list[Draft], table: TruthTable, effort: int) -> Iterator[tuple[str, Draft]]:

@@ -26,14 +26,14 @@ the model: it is then compared as a whole.
 """
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal
 
 import numpy as np
 
-from wnn2hdl.errors import ToolError
+from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.ir import PIXEL_BITS
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.verify.addition import is_sum_of_tables, is_wrong_on_samples
@@ -46,12 +46,14 @@ from wnn2hdl.verify.equivalence import (
     evaluate,
     find_differences,
 )
-from wnn2hdl.verify.signals import read_signals
-from wnn2hdl.verify.specification import Claim, Specification, show, value_bits
+from wnn2hdl.verify.graphs import difference_of_graphs, graph_of, graph_of_model
+from wnn2hdl.verify.signals import Signals, read_signals
+from wnn2hdl.verify.specification import Claim, Samples, Specification, show, value_bits
 
 METHOD = "ABC &cec on the miter of Yosys's and-inverter graphs"
 SUBSTITUTION = "substitution of signals by those they read, on all their values"
 SAMPLES = "a vector on which they differ"
+GRAPHS = "ABC &cec of the graph of the circuit's tables and the gates of the model"
 WIRING = "the claims of its pieces and its wiring, bit by bit"
 
 Status = Literal["proved", "refuted", "undecided"]
@@ -138,18 +140,45 @@ def prove(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[
 
 def _prove_whole(specification: Specification, emitted: Mapping[str, Circuit]) -> dict[str, Proof]:
     started = time.perf_counter()
-    claims = {part: claim for part, claim in specification.claims.items() if part in emitted}
+    stated = {part: claim for part, claim in specification.claims.items() if part in emitted}
+    proofs = {part: _prove_gates(claim, emitted[part]) for part, claim in stated.items() if claim.gates}
+    claims = {part: claim for part, claim in stated.items() if part not in proofs}
     pairs = [sides(specification, claim, emitted[part]) for part, claim in claims.items()]
-    differences = find_differences(pairs, timeout=_SECONDS)
+    differences = find_differences(pairs, timeout=_SECONDS) if pairs else []
     seconds = time.perf_counter() - started
-    return {
+    return proofs | {
         part: _proof(MODEL, seconds, values, partial(_against_model, claim, emitted[part]))
         for (part, claim), values in zip(claims.items(), differences, strict=True)
     }
 
 
+def _prove_gates(claim: Claim, circuit: Circuit) -> Proof:
+    """A circuit against a gate network: on samples, which find most faults soonest, then as graphs."""
+    started = time.perf_counter()
+    assert claim.gates is not None
+    (signals,) = read_signals([circuit])
+    if signals is None or signals.latencies - {circuit.latency}:
+        raise CheckError("the circuit is not a function of its inputs at one time", value=circuit.top)
+    found = _on_samples(claim, signals)
+    if found is not None:
+        return Proof(MODEL, SAMPLES, time.perf_counter() - started, "refuted", found)
+    difference = difference_of_graphs(graph_of(signals), graph_of_model(claim.gates))
+    counterexample = None
+    if isinstance(difference, list):
+        (port,) = claim.inputs
+        samples = {port: np.array([difference], dtype=np.bool_)}
+        counterexample = _differing(claim, signals, samples)
+        if counterexample is None:
+            raise ToolError("ABC's counterexample is wrong: circuit and model agree on it", value=claim.part)
+    seconds = time.perf_counter() - started
+    status: Status = "undecided" if difference == UNDECIDED else "refuted" if counterexample else "proved"
+    return Proof(MODEL, GRAPHS, seconds, status, counterexample)
+
+
 def method(specification: Specification) -> str:
     """What decides the claims of a specification."""
+    if any(claim.gates for claim in specification.claims.values()):
+        return GRAPHS
     if specification.composition is not None:
         return f"binary decision diagrams and {METHOD}, piece by piece; sums by {SUBSTITUTION}"
     return METHOD
@@ -182,7 +211,8 @@ def _prove_pieces(
     found = {proof.status for proof in proofs.values()}
     if fault is not None or "refuted" in found:
         claim = specification.claims[composition.part]
-        counterexample = _on_samples(claim, whole)
+        (signals,) = read_signals([whole])
+        counterexample = _on_samples(claim, signals)
         if counterexample is None:
             return proofs | _prove_whole(specification, {composition.part: whole})
         return proofs | {composition.part: Proof(MODEL, SAMPLES, seconds, "refuted", counterexample)}
@@ -204,12 +234,15 @@ def _prove_sums(pieces: Mapping[str, Piece], emitted: Mapping[str, Circuit]) -> 
     return found
 
 
-def _on_samples(claim: Claim, circuit: Circuit) -> Counterexample | None:
+def _on_samples(claim: Claim, signals: Signals | None) -> Counterexample | None:
     """A vector of the stimulus of a claim on which a circuit is not the model; None if there is none."""
-    (signals,) = read_signals([circuit])
     if signals is None or claim.stimulus is None:
         return None
-    inputs = claim.stimulus()
+    return _differing(claim, signals, claim.stimulus())
+
+
+def _differing(claim: Claim, signals: Signals, inputs: Samples) -> Counterexample | None:
+    """The first of some inputs on which a circuit is not the model."""
     found, expected = signals.answers(inputs), claim.answers(inputs)
     wrong = np.any([(found[port] != bits).any(axis=1) for port, bits in expected.items()], axis=0)
     if not wrong.any():
@@ -239,18 +272,26 @@ def _proof(
 
 
 def prove_netlists(
-    netlists: Mapping[str, tuple[Circuit, Circuit]], ports: Mapping[str, tuple[Widths, Widths]]
+    netlists: Mapping[str, tuple[Circuit, Circuit]],
+    ports: Mapping[str, tuple[Widths, Widths]],
+    gates: Container[str] = (),
 ) -> dict[str, Proof]:
     """Prove mapped netlists equal to the Verilog they were mapped from, on every input.
 
     Args:
         netlists: for each circuit the emitted Verilog and the netlist of 7-series cells.
         ports: for each circuit the widths of its input and of its output ports, in bits.
+        gates: the circuits that are gate networks, which are compared as graphs.
 
     Returns, raises: as `prove`; what a counterexample expects is the emitted Verilog's answer.
     """
     started = time.perf_counter()
-    differences = find_differences(list(netlists.values()), timeout=_SECONDS)
+    graphs = {
+        part: _difference_of_gates(*pair, ports[part]) for part, pair in netlists.items() if part in gates
+    }
+    compared = {part: pair for part, pair in netlists.items() if part not in graphs}
+    found = find_differences(list(compared.values()), timeout=_SECONDS) if compared else []
+    differences = graphs | dict(zip(compared, found, strict=True))
     seconds = time.perf_counter() - started
 
     def counterexample(part: str, values: Mapping[str, int]) -> Counterexample:
@@ -259,13 +300,29 @@ def prove_netlists(
         return Counterexample(part, values, expected, actual)
 
     return {
-        part: _proof(NETLIST, seconds, values, partial(counterexample, part))
-        for part, values in zip(netlists, differences, strict=True)
+        part: _proof(NETLIST, seconds, differences[part], partial(counterexample, part)) for part in netlists
     }
 
 
+def _difference_of_gates(left: Circuit, right: Circuit, ports: tuple[Widths, Widths]) -> Difference:
+    """An input on which the Verilog of a gate network and its netlist differ."""
+    first, second = read_signals([left, right])
+    if first is None or second is None or first.latencies != second.latencies:
+        raise CheckError("the netlist is not a function of its inputs at one time", value=right.top)
+    found = difference_of_graphs(graph_of(first), graph_of(second))
+    if not isinstance(found, list):
+        return found
+    ((port, _),) = ports[0].items()
+    return {port: word_values(np.array([found], dtype=np.bool_))[0]}
+
+
 def sides(specification: Specification, claim: Claim, circuit: Circuit) -> tuple[Circuit, Circuit]:
-    """What `prove` compares: a circuit and the reference of its claim, both held in the care set."""
+    """What `prove` compares: a circuit and the reference of its claim, both held in the care set.
+
+    Of a gate network, whose reference is no Verilog, the digest of the model stands for the reference.
+    """
+    if claim.gates is not None:
+        return circuit, Circuit((claim.gates.digest(),), claim.module)
     reference = Circuit((specification.reference,), claim.module)
     return held_in_care(specification, claim, circuit), held_in_care(specification, claim, reference)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.care import CareSet
+from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify.composition import Composition
 
@@ -57,6 +58,7 @@ class Claim:
         masks: outputs that matter on a part of the cared-for inputs only, and by which module a proof knows
             it.
         matters: for these outputs, from the model's answers, on which samples they do: bool ``[samples]``.
+        gates: of a gate network, the model: it is compared as a graph, without Verilog of its own.
     """
 
     part: str
@@ -70,6 +72,7 @@ class Claim:
     held: tuple[str, ...] = ()
     masks: Mapping[str, Mask] = field(default_factory=dict)
     matters: Mapping[str, Callable[[Samples], NDArray[np.bool_]]] = field(default_factory=dict)
+    gates: LogicModel | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,9 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import EdgeFilter, FeatureEncoder, Neighbourhood, WisardModel, Words
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
-from wnn2hdl.ir.models import AnyModel, NetworkModel, TableSumModel
+from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
 from wnn2hdl.verify.block import block_specification
+from wnn2hdl.verify.gates import gates_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
 from wnn2hdl.verify.network import network_specification
 from wnn2hdl.verify.specification import Specification
@@ -35,6 +36,8 @@ def specify(
     """
     if isinstance(model, NetworkModel) and isinstance(model.encoder, FeatureEncoder):
         return network_specification(model, circuit)
+    if isinstance(model, LogicModel):
+        return gates_specification(model)
     if isinstance(model, TableSumModel) and isinstance(model.encoder, Words):
         return sums_specification(model)
     if not isinstance(model, WisardModel):

@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from graphlib import TopologicalSorter
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wnn2hdl.ir import Lut, LutNetwork, Mux
+from wnn2hdl.ir import Lut, LutNetwork, Mux, packing
 from wnn2hdl.ir.packing import Gate, packed_luts, pairs
 
 
@@ -35,9 +36,13 @@ def joined(gates: Sequence[Gate], found: Sequence[tuple[int, int]]) -> dict[int,
     return graph
 
 
+@pytest.mark.parametrize("many", [packing._MANY, 0])
 @given(circuits())
-def test_pairs_fit_a_cell_and_close_no_loop(gates: list[Gate]) -> None:
-    found = pairs(gates)
+def test_pairs_fit_a_cell_and_close_no_loop(many: int, gates: list[Gate]) -> None:
+    """Of few tables, which a graph is searched for, and of many, which pair within their level."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(packing, "_MANY", many)
+        found = pairs(gates)
     members = [i for pair in found for i in pair]
     assert len(set(members)) == len(members)
     for one, other in found:
@@ -51,6 +56,12 @@ def test_pairs_fit_a_cell_and_close_no_loop(gates: list[Gate]) -> None:
 def test_tables_of_five_shared_signals_share_a_cell() -> None:
     assert pairs([lut("abcde", "x"), lut("abcde", "y")]) == [(0, 1)]
     assert pairs([lut("abcde", "x"), lut("abcdf", "y")]) == []
+
+
+def test_of_many_tables_those_of_one_level_are_paired(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packing, "_MANY", 0)
+    gates = [lut("ab", "x"), lut("xc", "y"), lut("abcd", "z"), lut("de", "w")]
+    assert pairs(gates) == [(0, 2)]
 
 
 def test_the_table_with_one_partner_chooses_first() -> None:

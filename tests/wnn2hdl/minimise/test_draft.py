@@ -74,7 +74,7 @@ def test_multiplexers_of_two_levels_are_free(data: int, luts: int, muxes: int) -
     table = TruthTable.exact(
         tuple(f"x{i}" for i in range(draft.width)), ("y",), np.zeros((1 << draft.width, 1), dtype=bool)
     )
-    network = draft.network(table)
+    network = draft.network(table.inputs, table.outputs)
     assert (len(network.luts), len(network.muxes)) == (luts, muxes)
     bits = (np.arange(1 << draft.width) >> np.arange(draft.width)[:, np.newaxis] & 1).astype(np.uint8)
     assert (
@@ -107,4 +107,4 @@ def test_names_of_the_table_are_not_taken_by_cells() -> None:
     draft = Draft(2)
     draft.outputs = [draft.add((0, 1), AND)]
     table = TruthTable.exact(("t0", "b"), ("t1",), np.array([[False], [False], [False], [True]]))
-    assert [lut.name for lut in draft.network(table).luts] == ["t2"]
+    assert [lut.name for lut in draft.network(table.inputs, table.outputs).luts] == ["t2"]
