@@ -6,6 +6,7 @@ import numpy as np
 
 from wnn2hdl.ir import LUT_INPUTS, LutNetwork
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
+from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.ir.nodes import Sum, Table
 
 _SPARSE = 20
@@ -50,6 +51,8 @@ def _node_luts(node: Node) -> int:
     if not isinstance(node, Table):
         return 0
     table = node.function
+    if isinstance(table, LogicModel):
+        return 0  # gates are quick to map, and counted then
     if isinstance(table, LutNetwork):
         return len(table.luts)
     total = 0

@@ -141,10 +141,3 @@ def test_a_format_that_means_nothing_is_refused() -> None:
     gates = LogicModel(("a",), ("b",), np.zeros((0, 2), np.uint32), np.array([2], np.uint32))
     with pytest.raises(InputError, match="the model reads no numbers"):
         with_input(gates, "Q3.12")
-
-
-def test_what_cannot_be_compiled_yet_is_refused_at_once(tmp_path: Path) -> None:
-    gates = LogicModel(("a",), ("b",), np.zeros((0, 2), np.uint32), np.array([2], np.uint32))
-    with pytest.raises(InputError, match="models of this kind are not compiled to circuits yet: logic"):
-        compile_model(gates, tmp_path / "x", CompileOptions(), silent)
-    assert list(tmp_path.iterdir()) == []
