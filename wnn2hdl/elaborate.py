@@ -9,6 +9,7 @@ from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib.wiring import In, Out
 
 from hdl_templates.adder import sum_network
+from hdl_templates.engine import MatchEngine
 from hdl_templates.hierarchy import Part, place
 from hdl_templates.lookup import draw_network, unread_inputs
 from hdl_templates.matcher import draw_match
@@ -17,6 +18,7 @@ from hdl_templates.video import VideoCore
 from hdl_templates.winner import winner_network
 from wnn2hdl.ir import LutNetwork, Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
+from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
 from wnn2hdl.ir.wires import Word, single_bits, width_of
 
@@ -57,6 +59,18 @@ def video_core(circuit: Circuit, video: VideoFormat, *, style: Style) -> VideoCo
         for name in ("classifier", "window")
     )
     return VideoCore(video=video, pixels=pixels, windows=windows)
+
+
+def match_engine(circuit: Circuit, engine: EngineFormat, *, style: Style) -> MatchEngine:
+    """The hardware of a match engine.
+
+    Args:
+        circuit: the circuit of a lane with its registers, see `wnn2hdl.lower.deforestation.engine`.
+        engine: its sizes.
+        style: how its LUT networks are written.
+    """
+    (lane,) = (node.circuit for node in circuit.nodes if isinstance(node, Instance))
+    return MatchEngine(engine=engine, lane=lambda: component(lane, style=style))
 
 
 class CircuitComponent(Part):

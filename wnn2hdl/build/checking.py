@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from wnn2hdl.build import remembered
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.emission import SOBEL, Files, baseline_module
@@ -153,9 +155,9 @@ def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[s
 
 
 def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
-    """What is counted: each circuit of a design, the video core around them, and the Sobel baseline."""
+    """What is counted: each circuit of a design, the core around them, and the Sobel baseline."""
     text = read_text(files.verilog, "Verilog")
-    whole = () if design.video is None else (design.circuit.name,)
+    whole = (design.circuit.name,) if design.has_memories else ()
     jobs = {part: Job(text, design.module(part)) for part in (*design.parts, *whole)}
     jobs[SOBEL] = Job(read_text(files.sobel, "Verilog"), baseline_module(design), baseline=True)
     return jobs
@@ -184,6 +186,16 @@ class _Simulations:
                 {"pixels": beats.pixels, "starts": beats.starts, "ends": beats.ends},
                 {"answers": beats.answers},
                 design.video,
+            )
+        if design.engine is not None:
+            small = design.engine.small()
+            rounds = small.sample_rounds()
+            counts[design.top.name] = len(rounds)
+            self.keys[design.top.name] = remembered.simulation_key(
+                design.top,
+                design.style,
+                {"sizes": np.array([*small.template, *small.segment, small.lanes, small.columns])},
+                {"words": np.array([answer.words for answer in small.answers(rounds)])},
             )
         self.passed = {
             part: counts[part] for part, key in self.keys.items() if not afresh and remembered.passed(key)

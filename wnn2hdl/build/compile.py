@@ -212,8 +212,8 @@ def _pruned(planned: Plan) -> dict[str, int | None]:
 
 def method(design: Design, checked: Checked) -> str:
     """How a design was checked against its model, in words."""
-    if design.video is not None:
-        return f"{checked.method}; the registers and memories of the video core around them simulated"
+    if design.has_memories:
+        return f"{checked.method}; the registers and memories of the core around them simulated"
     if isinstance(design.model, LogicModel) and not checked.vectors:
         return f"{checked.method}; too large to be simulated, so evaluated on samples instead"
     return checked.method

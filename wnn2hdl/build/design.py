@@ -15,6 +15,7 @@ from wnn2hdl.ir import EdgeFilter, LutNetwork, PictureEncoder, Style, VideoForma
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
+from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.identifiers import require_name, require_unreserved
 from wnn2hdl.ir.models import AnyModel, load_model
 from wnn2hdl.ir.verilog_text import check_comment
@@ -28,7 +29,7 @@ Mode = Literal["exact", "domain"]
 MODEL_FILE = "model.json"
 DESIGN_FILE = "design.json"
 FORMAT = "wnn2hdl-design"
-VERSION = 3
+VERSION = 4
 
 
 def require_picture_model(model: AnyModel) -> WisardModel:
@@ -53,6 +54,7 @@ class Design:
         header: lines of the comment at the top of the Verilog.
         stages: where the registers of its pipeline are; None of a design without registers.
         video: the streams of a video core; None of all other designs.
+        engine: the sizes of a match engine; None of all other designs.
     """
 
     model: AnyModel
@@ -65,6 +67,7 @@ class Design:
     header: tuple[str, ...]
     stages: Stages | None = None
     video: VideoFormat | None = None
+    engine: EngineFormat | None = None
 
     @cached_property
     def specification(self) -> Specification:
@@ -83,21 +86,31 @@ class Design:
 
     @property
     def latency(self) -> int:
-        """Cycles from inputs to outputs; of a video core those of its circuits, one after the other."""
+        """Cycles from inputs to outputs; of a video core those of its circuits, one after the other.
+
+        Of a match engine those from the last pixel of a template to the result.
+        """
+        if self.engine is not None:
+            return self.engine.cycles(self.top.latency)
         return self.top.latency if self.video is None else sum(node.latency for node in self.top.nodes)
 
     @property
     def parts(self) -> dict[str, Circuit]:
         """The circuits of the design by name, innermost first.
 
-        The last is the top of the Verilog, unless that is a video core: its circuits are apart from each
-        other.
+        The last is the top of the Verilog, unless that is a video core or a match engine: its circuits are
+        apart from each other.
         """
         return {
             name: circuit
             for name, circuit in self.top.definitions().items()
-            if self.video is None or circuit is not self.top
+            if not self.has_memories or circuit is not self.top
         }
+
+    @property
+    def has_memories(self) -> bool:
+        """Whether its circuits stand between the registers and memories of a core."""
+        return self.video is not None or self.engine is not None
 
     @property
     def networks(self) -> dict[str, LutNetwork]:
@@ -136,7 +149,7 @@ class Design:
                 f"The care set of the {name} holds {int(care.sum())} of {len(care)} codes."
                 for name, care in self.cared.items()
             ]
-        if self.stages is not None and self.video is not None:
+        if self.stages is not None and self.has_memories:
             cycles = ", ".join(f"{name} {circuit.latency}" for name, circuit in self.parts.items())
             lines.append(f"Registers in its circuits, in cycles: {cycles}.")
         elif self.stages is not None:
@@ -150,6 +163,12 @@ class Design:
             lines.append(
                 f"Pixels: {kind}, {self.video.pixels_per_clock} per clock; answer {self.video.answer}, "
                 f"lines of up to {self.video.max_width} pixels."
+            )
+        if self.engine is not None:
+            (height, width), (rows, columns) = self.engine.template, self.engine.segment
+            lines.append(
+                f"Template {height}x{width} in a segment {rows}x{columns}: {self.latency} cycles, "
+                f"{self.engine.lanes} lanes of {self.engine.columns} columns."
             )
         if self.edges is not None:
             made = f"Edge filter of {self.edges.size} patterns. {made}"
@@ -180,6 +199,7 @@ class Design:
                 "circuit": circuit_to_json(self.circuit),
                 "pipeline": None if self.stages is None else self.stages.to_json(),
                 "video": None if self.video is None else self.video.to_json(),
+                "engine": None if self.engine is None else self.engine.to_json(),
             },
         )
 
@@ -213,6 +233,7 @@ class Design:
                 tuple(data["header"]),
                 None if data["pipeline"] is None else Stages.from_json(data["pipeline"]),
                 None if data["video"] is None else VideoFormat.from_json(data["video"]),
+                None if data["engine"] is None else EngineFormat.from_json(data["engine"]),
             )
             design.check()
         except (KeyError, TypeError, ValueError, IndexError, AttributeError, InputError) as error:
@@ -234,7 +255,11 @@ class Design:
         claims = self.specification.claims
         if self.target.streams != (self.video is not None):
             raise ValueError(f"the {self.target.name} has streams, or has none")
-        outermost = self.parts if self.video else (self.circuit.name,)
+        if self.target.matches != (self.engine is not None):
+            raise ValueError(f"the {self.target.name} has sizes of an engine, or has none")
+        if self.engine is not None and not self.top.latency:
+            raise ValueError("the lanes of an engine have registers")
+        outermost = self.parts if self.video else ("lane",) if self.engine else (self.circuit.name,)
         if unknown := [name for name in outermost if name not in claims]:
             raise ValueError(f"nothing is known about the circuits {unknown}")
         require_unreserved(self.module(self.circuit.name))

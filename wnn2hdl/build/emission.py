@@ -16,6 +16,8 @@ from wnn2hdl.build.streaming import sample_frames
 from wnn2hdl.emit import (
     CELLS_FILE,
     cells_model,
+    engine_testbench,
+    engine_vectors,
     stream_testbench,
     stream_vectors,
     testbench,
@@ -81,6 +83,8 @@ class Files:
 
 def top_part(design: Design) -> Part:
     """The hardware of a design."""
+    if design.engine is not None:
+        return elaborate.match_engine(design.top, design.engine, style=design.style)
     if design.video is None:
         return elaborate.component(design.top, style=design.style)
     return elaborate.video_core(design.top, design.video, style=design.style)
@@ -135,7 +139,18 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
     rival, title = _baseline(design, sobel_threshold)
     sources = [path.name for path in files.simulated]
     top = design.module(design.circuit.name)
-    if design.video is None:
+    if design.engine is not None:
+        rounds = design.engine.sample_rounds()
+        data = engine_vectors(design.engine, rounds)
+        bench = engine_testbench(
+            name=top,
+            engine=design.engine,
+            cycles=design.latency,
+            rounds=rounds,
+            vectors_file=files.vectors.name,
+            sources=sources,
+        )
+    elif design.video is None:
         claim = design.specification.claims[design.circuit.name]
         assert claim.stimulus is not None
         inputs = claim.stimulus()

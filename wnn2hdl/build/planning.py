@@ -27,6 +27,7 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.engine import EngineFormat, Shape
 from wnn2hdl.ir.features import FixedPoint, Thermometer
 from wnn2hdl.ir.models import AnyModel, LogicModel
 from wnn2hdl.ir.packing import packed_luts
@@ -71,6 +72,9 @@ class CompileOptions:
         format: of a video core: a pixel's channels from the least significant byte, or ``mono``.
         answer: of a video core: ``class``, ``edge`` or ``both``.
         pixels_per_clock: of a video core: 1, 2 or 4.
+        template: of a match engine: rows and columns of the template.
+        segment: of a match engine: rows and columns of the segment of the map that it is looked for in.
+        frames_per_second: of a match engine: how many templates it matches at this `clock`.
         test_images: folder of labelled pictures for the accuracies in the report; needs `test_masks`.
         test_masks: folder of their masks.
         test_table: file of labelled feature vectors for the same, of a model that reads these.
@@ -103,6 +107,9 @@ class CompileOptions:
     max_width: int = VideoFormat.max_width
     format: str = VideoFormat.format
     answer: Answer = VideoFormat.answer
+    template: Shape | None = None
+    segment: Shape | None = None
+    frames_per_second: float | None = None
     pixels_per_clock: int = VideoFormat.pixels_per_clock
     test_images: Path | None = None
     test_masks: Path | None = None
@@ -191,8 +198,9 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         care = _care_sets(model, options, seen) if seen is not None else None
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
-    lowered = target.lower(Ingredients(model, edges, care, video))
-    require_capacity(estimated_luts(lowered), options.max_luts)
+    engine = _engine(options) if target.matches else None
+    lowered = target.lower(Ingredients(model, edges, care, video, engine))
+    require_capacity(int(engine.luts) if engine else estimated_luts(lowered), options.max_luts)
     minimised = minimise(lowered, options.effort, progress, by=minimise_once)
     if isinstance(model, LogicModel):
         tables = (table.function for table in minimised.circuit.tables().values())
@@ -209,6 +217,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
         (),
         _stages(minimised.circuit, target, options),
         video,
+        engine,
     )
     design = replace(design, header=design.made_by(options.effort, generators()))
     design.check()
@@ -259,6 +268,38 @@ def _video(options: CompileOptions) -> VideoFormat:
             hint=f"give at most --clock {MAX_CLOCK:g}, and more --pixels-per-clock",
         )
     return VideoFormat(options.max_width, options.format, options.answer, options.pixels_per_clock)
+
+
+def _engine(options: CompileOptions) -> EngineFormat:
+    """The sizes of a match engine; raises InputError for some that are missing, or that there is none of."""
+    sizes = {
+        "--template": options.template,
+        "--segment": options.segment,
+        "--clock": options.clock,
+        "--frames-per-second": options.frames_per_second,
+    }
+    missing = [name for name, value in sizes.items() if value is None]
+    if missing:
+        raise InputError(
+            "a match engine is made for sizes, a clock and a rate",
+            value=f"{', '.join(missing)} missing",
+            hint="give --template 220x220 --segment 543x543 --clock 100 --frames-per-second 10, or others",
+        )
+    if options.mode == "domain":
+        raise InputError("a match engine has no care set", value="--mode domain", hint="leave it out")
+    assert options.template is not None
+    assert options.segment is not None
+    assert options.clock is not None
+    assert options.frames_per_second is not None
+    cycles = int(options.clock * 1e6 / options.frames_per_second)
+    try:
+        return EngineFormat.fast_enough(options.template, options.segment, cycles)
+    except ValueError as error:
+        raise InputError(
+            "there is no such match engine",
+            value=error,
+            hint="give other sizes, or fewer --frames-per-second",
+        ) from error
 
 
 def _stages(circuit: Circuit, target: Target, options: CompileOptions) -> Stages | None:

@@ -182,6 +182,8 @@ def _word(option: str, value: Any) -> str:
         return str(Path(value).resolve())
     if option == "ignore":
         return spoken_codes(value)
+    if option in ("template", "segment"):
+        return "x".join(map(str, value))
     if isinstance(value, tuple):
         return (":" if option == "scale" else ",").join(map(str, value))
     return str(value)

@@ -13,10 +13,11 @@ import numpy as np
 
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.streaming import sample_frames
-from wnn2hdl.elaborate import component, video_core
+from wnn2hdl.elaborate import component, match_engine, video_core
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.tools import run
+from wnn2hdl.verify.engine import simulate_engine
 from wnn2hdl.verify.simulation import SimulationResult, simulate
 from wnn2hdl.verify.specification import Claim
 from wnn2hdl.verify.stream import simulate_stream
@@ -50,7 +51,7 @@ def simulate_apart(folder: Path, parts: Sequence[str]) -> tuple[dict[str, int], 
 
     Args:
         folder: holds the build's model and design.
-        parts: the circuits, or the video core.
+        parts: the circuits, or the core around them.
 
     Returns:
         How many vectors each was simulated on, and the first mismatch in words; None if there is none.
@@ -75,6 +76,9 @@ def simulate_parts(design: Design, parts: Sequence[str]) -> tuple[dict[str, int]
 
 
 def _simulate(design: Design, part: str) -> SimulationResult:
+    if part not in design.parts and design.engine is not None:
+        small = design.engine.small()
+        return simulate_engine(match_engine(design.top, small, style=design.style), small.sample_rounds())
     if part not in design.parts:
         assert design.video is not None
         core = video_core(design.top, design.video, style=design.style)

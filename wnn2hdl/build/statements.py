@@ -47,7 +47,7 @@ def foreign_circuit(design: Design) -> list[str]:
     """
     # In exact mode the only don't-cares are those that the lowering itself finds impossible.
     care = care_sets(design.circuit) if design.mode == "domain" else None
-    wanted = design.target.lower(Ingredients(design.model, design.edges, care, design.video))
+    wanted = design.target.lower(Ingredients(design.model, design.edges, care, design.video, design.engine))
     faces = {name: _face(circuit) for name, circuit in wanted.definitions().items()}
     problems, parts = [], design.circuit.definitions()
     if design.circuit.name != wanted.name or list(parts) != list(faces):

@@ -1,5 +1,6 @@
 """`compile`: a model becomes a build folder."""
 
+import re
 from pathlib import Path
 from typing import Any, get_args
 
@@ -24,10 +25,27 @@ from wnn2hdl.cli.pictures import (
 from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style, VideoFormat
+from wnn2hdl.ir.engine import Shape
 from wnn2hdl.ir.models import load_model
 from wnn2hdl.ir.video import FORMATS, MAX_WIDTH, PIXELS_PER_CLOCK, Answer
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.schedule import MAX_STAGES
+
+
+class SizeType(click.ParamType[Shape]):
+    """Rows and columns of a picture."""
+
+    name = "ROWSxCOLUMNS"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Shape:
+        """The two numbers."""
+        if isinstance(value, tuple):
+            return value
+        found = re.fullmatch(r"(\d{1,9})x(\d{1,9})", str(value))
+        if found is None:
+            self.fail(f"{value!r} is not a size such as 220x220", param, ctx)
+        return int(found[1]), int(found[2])
+
 
 SECTIONS = {
     "Circuit": (
@@ -48,6 +66,7 @@ SECTIONS = {
     ),
     "Checks": ("--max-luts", "--allow-unproved"),
     "Edge filter": ("--edges", "--edge-images", "--edge-patterns", "--edge-luts"),
+    "Match engine": ("--template", "--segment", "--frames-per-second"),
     "Pictures": ("--test-images", "--test-masks", *MASKS, *READING),
     "Feature vectors": ("--prune", "--prune-table", "--most-changed", "--test-table", "--label", "--raw"),
 }
@@ -168,6 +187,14 @@ SECTIONS = {
     default=VideoFormat.answer,
     show_default=True,
     help="Send class, edge or both of video.",
+)
+@click.option("--template", type=SizeType(), help="Make an engine for templates of this size.")
+@click.option("--segment", type=SizeType(), help="Let it look for them in segments of this size.")
+@click.option(
+    "--frames-per-second",
+    type=FiniteRange(min=0, min_open=True),
+    metavar="N",
+    help="Let it match N templates per second.",
 )
 @click.option("--test-images", type=folder, help="Measure the report's accuracies on these pictures.")
 @click.option("--test-masks", type=folder, help="Find the masks of --test-images in this folder.")

@@ -1,6 +1,7 @@
 """Component to files: Verilog, models of cells, testbench with vectors, manifest."""
 
 from wnn2hdl.emit.cells import CELLS_FILE, cells_model
+from wnn2hdl.emit.engine_testbench import engine_testbench, engine_vectors
 from wnn2hdl.emit.manifest import MANIFEST_NAME, check, manifest, renew_manifest, write_manifest
 from wnn2hdl.emit.stream_testbench import stream_testbench, stream_vectors
 from wnn2hdl.emit.testbench import testbench, vectors
@@ -11,6 +12,8 @@ __all__ = [
     "MANIFEST_NAME",
     "cells_model",
     "check",
+    "engine_testbench",
+    "engine_vectors",
     "manifest",
     "renew_manifest",
     "stream_testbench",

@@ -17,6 +17,9 @@ from wnn2hdl.emit.netlist import (
     count_reads,
 )
 
+_MOST_INITIAL = 1 << 16
+"""Words of the largest memory whose contents are written down: Yosys takes minutes to read more of them."""
+
 UNUSED = "unused"
 """The wire that gathers what nothing reads; it stays although nothing reads it either."""
 
@@ -44,7 +47,8 @@ class Statement:
         head: of an instance, what stands before its pins; empty of all others.
         marks: of a flip-flop, the attributes of its net; of what writes a memory, those of the memory.
         clock: of what happens at a clock edge, as an expression of the edge; None of all others.
-        initial: of a flip-flop, and of the words of a memory, the value before the first edge.
+        initial: of a flip-flop, and of the words of a memory that is not large, the value before the first
+            edge.
         words: of what writes a memory, how many words it has.
     """
 
@@ -253,7 +257,7 @@ class _Translation:
         address, data = self._word(cell.inputs["ADDR"]), self._word(cell.inputs["DATA"])
         statement = self._enabled(cell, (memory,), f"{memory}[{address}] <= {data};", frozenset())
         kind = self.module.memories[cell.memory]
-        initial = 0 if contents else None
+        initial = 0 if contents and kind.words <= _MOST_INITIAL else None
         return replace(statement, words=kind.words, initial=initial, marks=_marks(kind.attributes))
 
     def _ports(self, of: Cell, kind: str) -> list[Cell]:

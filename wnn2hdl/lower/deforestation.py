@@ -159,6 +159,26 @@ def video(pixel_circuit: Circuit, edge_circuit: Circuit | None) -> Circuit:
     return Circuit("video", summary, tuple(inputs), tuple(nodes), drivers)
 
 
+def lane(columns: int) -> Circuit:
+    """A lane of a match engine: in how many ``pairs`` of neighbouring bits the two are equal, ``count``."""
+    pairs = Port("pairs", 2 * columns)
+    segment, template = (
+        tuple(Slice("pairs", 2 * column + side) for column in range(columns)) for side in range(2)
+    )
+    count = Match("agreement", segment, template)
+    summary = "In how many pairs of neighbouring bits the two are equal."
+    agreement = Circuit("agreement", summary, (pairs,), (count,), {"count": _all(count)})
+    compares = Instance("compares", agreement, {"pairs": pairs.word})
+    return Circuit("lane", "A lane of a match engine.", (pairs,), (compares,), {"count": _all(compares)})
+
+
+def engine(lane_circuit: Circuit) -> Circuit:
+    """What a match engine computes between its registers: the circuit of one of its lanes."""
+    pairs = Port("pairs", lane_circuit.inputs[0].width)
+    one = Instance("lane", lane_circuit, {"pairs": pairs.word})
+    return Circuit("engine", "The circuit of a match engine.", (pairs,), (one,), {"count": _all(one)})
+
+
 def neighbourhood(model: WisardModel, encoder: Neighbourhood, care: CareSet) -> Circuit:
     """The classifier of a pixel and its neighbours: ``window`` to ``class_bits``.
 

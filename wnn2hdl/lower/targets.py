@@ -17,6 +17,7 @@ from wnn2hdl.ir import (
 )
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.circuit import Circuit
+from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
 from wnn2hdl.ir.video import MAX_CLASSES
 from wnn2hdl.lower import deforestation, gates, structural, sums
@@ -31,12 +32,14 @@ class Ingredients:
         edges: the edge filter; None for targets that have none.
         care: the care sets of circuits by name; where one is missing, everything matters.
         video: the streams of a video core; None for other targets.
+        engine: the sizes of a match engine; None for other targets.
     """
 
     model: AnyModel
     edges: EdgeFilter | None = None
     care: Mapping[str, CareSet] | None = None
     video: VideoFormat | None = None
+    engine: EngineFormat | None = None
 
     def cared(self, name: str, width: int) -> CareSet:
         """The care set of a circuit whose code has ``width`` bits."""
@@ -55,6 +58,7 @@ class Target:
         has_edges: whether the circuit contains the edge filter.
         classifies: whether it answers with classes of pixels.
         streams: whether it is a video core, whose circuits stand between registers and memories.
+        matches: whether it is a match engine, whose circuits do so, too.
     """
 
     name: str
@@ -64,6 +68,7 @@ class Target:
     has_edges: bool = False
     classifies: bool = True
     streams: bool = False
+    matches: bool = False
 
 
 def _pixel(of: Ingredients) -> Circuit:
@@ -87,6 +92,11 @@ def _video(of: Ingredients) -> Circuit:
     if len(model.classes) > MAX_CLASSES:
         raise InputError(f"a video core has at most {MAX_CLASSES} classes", value=len(model.classes))
     return deforestation.video(_pixel(of), _edge(of) if of.video.has_edges else None)
+
+
+def _engine(of: Ingredients) -> Circuit:
+    assert of.engine is not None
+    return deforestation.engine(deforestation.lane(of.engine.columns))
 
 
 def _neighbourhood(of: Ingredients) -> Circuit:
@@ -162,6 +172,14 @@ TARGETS: Mapping[str, Target] = {
             _reads_pixels,
             has_edges=True,
             streams=True,
+        ),
+        Target(
+            "engine",
+            "A match engine: where in a segment of a map a binary picture agrees in most pixels",
+            _engine,
+            _reads_pixels,
+            classifies=False,
+            matches=True,
         ),
         Target(
             "network",

@@ -9,6 +9,12 @@ from wnn2hdl.errors import CheckError
 _COUNTED_AS: dict[str, tuple[str, float]] = {
     **{f"LUT{inputs}": ("luts", 1) for inputs in range(1, 7)},
     "LUT6_2": ("luts", 1),
+    # Memories in LUTs take as many of them (UG474).
+    "RAM32X1D": ("luts", 2),
+    "RAM64X1D": ("luts", 2),
+    "RAM128X1D": ("luts", 4),
+    "RAM32M": ("luts", 4),
+    "RAM64M": ("luts", 4),
     "INV": ("inv", 1),
     "MUXF7": ("muxf7", 1),
     "MUXF8": ("muxf8", 1),
@@ -30,7 +36,8 @@ class Resources:
     """What a circuit costs on a 7-series device, without packing two small LUTs into one.
 
     Attributes:
-        luts: LUT1 to LUT6 cells, LUT6_2 counting one, and leftover INV cells, except for a baseline.
+        luts: LUT1 to LUT6 cells, LUT6_2 counting one, LUTs that serve as memories, and leftover INV cells,
+            except for a baseline.
         inv: leftover inverters.
         muxf7: 2:1 multiplexers between two LUTs of a slice.
         muxf8: 2:1 multiplexers between two MUXF7.

@@ -9,6 +9,7 @@ from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
 from wnn2hdl.verify.block import block_specification
 from wnn2hdl.verify.gates import gates_specification
+from wnn2hdl.verify.lane import ENGINE, lane_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
 from wnn2hdl.verify.network import network_specification
 from wnn2hdl.verify.specification import Specification
@@ -34,6 +35,8 @@ def specify(
         InputError: the model reads no pixels, or a care set is empty.
         ValueError: the circuit is not made of the pieces of the model's.
     """
+    if circuit is not None and circuit.name == ENGINE:
+        return lane_specification(circuit.inputs[0].width // 2)
     if isinstance(model, NetworkModel) and isinstance(model.encoder, FeatureEncoder):
         return network_specification(model, circuit)
     if isinstance(model, LogicModel):

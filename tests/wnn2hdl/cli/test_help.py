@@ -83,8 +83,8 @@ def test_an_option_is_a_flag_a_place_or_a_value_in_all_commands() -> None:
         (("train", "--pixel-budget", "2"), "No such option '--pixel-budget'; did you mean --luts-per-pixel?"),
         (
             ("compile", "--luts-per-pixel", "2"),
-            "No such option '--luts-per-pixel'; did you mean --edge-luts or --max-luts or "
-            "--pixels-per-clock?",
+            "No such option '--luts-per-pixel'; did you mean --edge-luts or --frames-per-second or "
+            "--max-luts or --pixels-per-clock?",
         ),
         (("verify", "--fast"), "No such option '--fast'."),
     ],

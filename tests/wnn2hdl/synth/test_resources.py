@@ -33,6 +33,10 @@ def test_a_leftover_inverter_is_a_lut_except_in_a_baseline() -> None:
     assert (baseline.luts, baseline.inv) == (10, 3)
 
 
+def test_memories_in_luts_are_luts() -> None:
+    assert count_cells({"RAM32M": 2, "RAM64X1D": 3, "LUT6": 1}, delay_ps=None).luts == 15
+
+
 def test_a_block_ram_of_18_kb_is_half_of_one() -> None:
     assert count_cells({"RAMB36E1": 1, "RAMB18E1": 3}, delay_ps=None).bram36 == 2.5
 
@@ -41,7 +45,7 @@ def test_marks_and_clock_buffers_cost_nothing() -> None:
     assert count_cells({"$scopeinfo": 10, "BUFG": 1}, delay_ps=None) == NOTHING
 
 
-@pytest.mark.parametrize("cell", ["RAM64M", "$lut", "$_AND_", "MUXF9", "my_black_box"])
+@pytest.mark.parametrize("cell", ["RAM256X1S", "$lut", "$_AND_", "MUXF9", "my_black_box"])
 def test_nothing_escapes_the_count(cell: str) -> None:
     with pytest.raises(CheckError, match=r"cells that the count does not know: 2 "):
         count_cells({"LUT6": 1, cell: 2}, delay_ps=None)
