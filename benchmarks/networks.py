@@ -12,19 +12,14 @@ on random bits for ten classes. Random tables share nothing and drop nothing, so
 """
 
 import argparse
-import json
-import os
-import resource
-import subprocess
-import sys
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
+from benchmarks.compiling import compile_apart
 from benchmarks.plain import TOP, plain_verilog
 from benchmarks.published import ROWS, load, train
 from wnn2hdl.build.planning import with_input
@@ -125,50 +120,12 @@ def scale_network(nodes: int) -> LutGroupModel:
     return LutGroupModel(encoder, tuple(map(str, range(10))), (layer,), owners)
 
 
-def family_bytes(root: int) -> int:
-    """Resident memory of a process and all its children (Linux)."""
-    parents: dict[int, int] = {}
-    resident: dict[int, int] = {}
-    for folder in Path("/proc").iterdir():
-        if folder.name.isdigit():
-            try:
-                fields = (folder / "stat").read_text().rpartition(")")[2].split()
-            except OSError:
-                continue
-            parents[int(folder.name)] = int(fields[1])
-            resident[int(folder.name)] = int(fields[21]) * os.sysconf("SC_PAGE_SIZE")
-    family, waiting = 0, [root]
-    while waiting:
-        process = waiting.pop()
-        family += resident.get(process, 0)
-        waiting += [child for child, parent in parents.items() if parent == process]
-    return family
-
-
 def scale(nodes: int) -> None:
     """Print a row about a compile of so many tables."""
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        scale_network(nodes).save(folder / "model.json")
-        command = [sys.executable, "-m", "wnn2hdl", "compile", str(folder / "model.json")]
-        environment = os.environ | {"WNN2HDL_CACHE": str(folder / "cache")}
-        before, started, most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime, time.perf_counter(), 0
-        process = subprocess.Popen(
-            [*command, "-o", str(folder / "network")],
-            env=environment,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        while process.poll() is None:
-            most = max(most, family_bytes(process.pid))
-            time.sleep(0.2)
-        wall = time.perf_counter() - started
-        cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        path = folder / "network" / "report.json"
-        report = json.loads(path.read_text()) if path.exists() else None
-        status = report["proof"]["status"] if report else f"exit status {process.returncode}"
-        count = report["parts"]["network"]["luts"] if report else ""
-        print(row([nodes, round(wall), round(cpu), round(most / 1e6), count, status]), flush=True)
+        found = compile_apart(scale_network(nodes), Path(place))
+    figures = [nodes, round(found.wall), round(found.cpu), round(found.peak / 1e6)]
+    print(row([*figures, found.luts or "", found.proof]), flush=True)
 
 
 def main() -> None:
