@@ -120,8 +120,8 @@ def check(design: Design, files: Files, progress: Progress, *, afresh: bool) -> 
     netlists = Proofs(pairs, afresh=afresh)
     if netlists.due:
         widths = {part: circuit.widths for part, circuit in design.parts.items()}
-        gates = {part for part, claim in specification.claims.items() if claim.gates is not None}
-        netlists.note(prove_netlists({part: pairs[part] for part in netlists.due}, widths, gates))
+        graphs = set(pairs) if specification.is_of_network else set[str]()
+        netlists.note(prove_netlists({part: pairs[part] for part in netlists.due}, widths, graphs))
     failures = [
         mismatch,
         refutation(verilog.found, "Verilog"),

@@ -79,6 +79,11 @@ class Signals:
     gates: Mapping[Bit, Gate]
     named: frozenset[Bit]
 
+    @property
+    def ports(self) -> list[tuple[str, int]]:
+        """Name and width of each input port, then of each output port, in the module's order."""
+        return [(port, len(bits)) for ports in (self.inputs, self.outputs) for port, bits in ports.items()]
+
     @cached_property
     def leaves(self) -> dict[Bit, tuple[Bit, ...]]:
         """For each named bit that is driven, the named bits and inputs that it is a function of.

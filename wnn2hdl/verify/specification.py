@@ -91,6 +91,11 @@ class Specification:
     care: str
     composition: Composition | None = None
 
+    @property
+    def is_of_network(self) -> bool:
+        """Whether it is of a network of features or gates, which may be large."""
+        return self.composition is not None or any(claim.gates for claim in self.claims.values())
+
 
 def flags_of(care: CareSet, width: int, what: str) -> NDArray[np.bool_]:
     """A care set of codes, bool ``[2**width]``.

@@ -166,21 +166,24 @@ def test_instantiated_luts_are_proved_by_their_contents(circuits: ModuleType) ->
         assert status(specification, "edge", circuit) == outcome
 
 
-def test_the_mapped_netlist_is_proved_equal_and_one_flipped_init_bit_found(circuits: ModuleType) -> None:
+@pytest.mark.parametrize("as_graphs", [(), ("edge", "match")], ids=["as Yosys reads it", "as graphs"])
+@pytest.mark.parametrize(("part", "output"), [("edge", "edge_bit"), ("match", "match_count")])
+def test_the_mapped_netlist_is_proved_equal_and_one_flipped_init_bit_found(
+    circuits: ModuleType, part: str, output: str, as_graphs: tuple[str, ...]
+) -> None:
     block = circuits.random_block(6)
-    specification = circuits.exact(block)
-    source = circuits.circuit(block, "edge")
+    source = circuits.circuit(block, part)
     netlist = circuits.mapped(source)
     (text,) = netlist.sources
-    claim = specification.claims["edge"]
-    ports = {"edge": (claim.inputs, claim.outputs)}
-    assert prove_netlists({"edge": (source, netlist)}, ports)["edge"].status == "proved"
+    claim = circuits.exact(block).claims[part]
+    ports = {part: (claim.inputs, claim.outputs)}
+    assert prove_netlists({part: (source, netlist)}, ports, as_graphs)[part].status == "proved"
     start = text.index("'h", text.index("INIT(")) + 2
     wrong = f"{text[:start]}{int(text[start], 16) ^ 1:x}{text[start + 1 :]}"
-    netlist = circuits.as_circuit("edge", wrong)
-    found = prove_netlists({"edge": (source, netlist)}, ports)["edge"].counterexample
+    netlist = circuits.as_circuit(part, wrong)
+    found = prove_netlists({part: (source, netlist)}, ports, as_graphs)[part].counterexample
     assert found is not None
-    assert found.actual["edge_bit"] != found.expected["edge_bit"]
+    assert found.actual[output] != found.expected[output]
 
 
 @pytest.mark.parametrize(
