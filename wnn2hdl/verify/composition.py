@@ -85,12 +85,15 @@ class Composition:
         pieces: what is claimed of each module by its part.
         boxes: the instances by their place in the hierarchy, each after those that it reads.
         outputs: for each output port of the circuit the bit that drives each of its bits.
+        reference: Verilog of the modules that the pieces name, and of no other: Yosys takes long to read that
+            of a large network.
     """
 
     part: str
     pieces: Mapping[str, Piece]
     boxes: Mapping[str, Box]
     outputs: Mapping[str, tuple[str, ...]]
+    reference: str
 
 
 def bits(name: str, width: int) -> tuple[str, ...]:

@@ -260,10 +260,11 @@ def read(circuits: Sequence[Circuit], folder: Path) -> list[list[str]]:
         circuits: the circuits.
         folder: where Yosys will run.
     """
-    shared = Counter(circuit.sources for circuit in circuits)
+    left = Counter(circuit.sources for circuit in circuits)
     numbers: dict[tuple[str, ...], int] = {}
     scripts: list[list[str]] = []
     for circuit in circuits:
+        left[circuit.sources] -= 1
         saved = numbers.get(circuit.sources)
         if saved is None:
             saved = numbers[circuit.sources] = len(numbers)
@@ -275,10 +276,13 @@ def read(circuits: Sequence[Circuit], folder: Path) -> list[list[str]]:
                 name = f"{saved}_{position}.v"
                 (folder / name).write_text(text, encoding="utf-8")
                 script.append(f"read_verilog -nooverwrite {name}")
-            if shared[circuit.sources] > 1:
+            if left[circuit.sources]:
                 script.append(f"design -save read_{saved}")
         else:
             script = [f"design -load read_{saved}"]
+            if not left[circuit.sources]:
+                # Of a network of 2,000 tables a text takes hundreds of megabytes.
+                script.append(f"design -delete read_{saved}")
         # A module that asks a synthesiser to keep it would not be flattened.
         script += [f"hierarchy -check -top {circuit.top}", "setattr -mod -unset keep_hierarchy *", "proc"]
         scripts.append(script)

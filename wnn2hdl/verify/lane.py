@@ -40,6 +40,7 @@ def lane_specification(columns: int) -> Specification:
         {_AGREEMENT: piece},
         {"compares": Box(_AGREEMENT, {"pairs": bits("pairs", 2 * columns)})},
         {"count": bits("compares.count", columns.bit_length())},
+        "",
     )
 
     def answers(samples: Samples) -> dict[str, Bits]:

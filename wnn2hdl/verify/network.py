@@ -59,7 +59,7 @@ def network_specification(model: NetworkModel, circuit: Circuit | None = None) -
     if circuit is None:
         return Specification({PART: claim}, reference, care)
     pieces = Pieces(model, circuit)
-    return Specification({PART: claim}, reference + pieces.reference, care, pieces.composition)
+    return Specification({PART: claim}, reference + pieces.composition.reference, care, pieces.composition)
 
 
 def encoder_bits(encoder: Encoder, features: Bits) -> Bits:

@@ -55,7 +55,6 @@ class Pieces:
 
     Attributes:
         composition: what is claimed.
-        reference: Verilog of the modules that it names.
 
     Raises:
         ValueError: the circuit is not made of these pieces, or does not say what its bits are.
@@ -101,8 +100,7 @@ class Pieces:
         pieces["winner"] = self._winner({port: len(word) for port, word in responses.items()})
         boxes["decide.winner"] = Box("winner", responses)
         outputs = {"class_bits": bits("decide.winner.class_bits", class_bits(model))}
-        self.composition = Composition(circuit.name, pieces, boxes, outputs)
-        self.reference = "".join(self._modules)
+        self.composition = Composition(circuit.name, pieces, boxes, outputs, "".join(self._modules))
 
     def _read(self) -> list[int]:
         """Which of the encoder's bits the circuit makes, in its order."""

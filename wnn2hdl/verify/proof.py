@@ -193,8 +193,8 @@ def _prove_pieces(
     statuses = _prove_sums(pieces, emitted)
     pairs = {
         part: (
-            piece.framed(emitted[part], specification.reference),
-            Circuit((specification.reference,), piece.module),
+            piece.framed(emitted[part], composition.reference),
+            Circuit((composition.reference,), piece.module),
         )
         for part, piece in pieces.items()
         if part not in statuses and piece.module is not None

@@ -45,10 +45,11 @@ def sums_specification(model: TableSumModel) -> Specification:
         drivers = add(f"layer_{number}", f"adds_{number}", *_adding(model, number), drivers)
         drivers = add(f"saturation_{number}", f"saturates_{number}", *_saturating(model, number), drivers)
     drivers = add("winner", "winner", *_winner(model), drivers)
-    composition = Composition(PART, pieces, boxes, {"class_bits": tuple(drivers)})
+    modules = "\n".join(reference)
+    composition = Composition(PART, pieces, boxes, {"class_bits": tuple(drivers)}, modules)
     claim = _network(model)
-    reference.append(module(claim.module, claim.inputs, claim.outputs, _wiring(pieces)))
-    return Specification({PART: claim}, "\n".join(reference), "", composition)
+    whole = module(claim.module, claim.inputs, claim.outputs, _wiring(pieces))
+    return Specification({PART: claim}, f"{modules}\n{whole}", "", composition)
 
 
 def _adding(model: TableSumModel, number: int) -> tuple[Piece, list[str]]:
