@@ -12,7 +12,7 @@ from wnn2hdl.build.emission import render_unpaired, top_ports
 from wnn2hdl.build.extending import add_to_report, require_outside, require_unchanged
 from wnn2hdl.build.minimising import minimise_once
 from wnn2hdl.build.verification import open_build
-from wnn2hdl.errors import CheckError
+from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.files import make_folder, read_text, write_bytes, write_text
 from wnn2hdl.ir.circuit import Circuit as CircuitOfTables
 from wnn2hdl.lower.targets import Ingredients
@@ -56,11 +56,18 @@ def place_build(
         progress: reports each step.
 
     Raises:
-        InputError: the folder is not a build, the design does not fit, or the pins are wrong.
+        InputError: the folder is not a build or is that of a match engine, the design does not fit, or the
+            pins are wrong.
         CheckError: files of the build were changed, or a proof fails.
         ToolError: a program is missing or failed.
     """
     design, _, report = open_build(folder)
+    if design.engine is not None:
+        raise InputError(
+            "match engines are not placed on other FPGAs: their multiplier is not mapped",
+            value=str(folder),
+            hint="take their Verilog into Vivado: `synth BUILD --tool vivado --scripts`",
+        )
     require_unchanged(folder)
     require_outside(folder, output)
     fabric = FABRICS[device]

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.placing import place_build
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.errors import InputError, ToolError
@@ -43,6 +44,12 @@ def test_a_build_of_an_engine_passes_its_checks_again(engine: Path) -> None:
     assert not problems
     assert checked is not None
     assert checked.vectors["engine"] == 3
+
+
+def test_an_engine_is_not_placed_on_other_fpgas(engine: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="match engines are not placed"):
+        place_build(engine, "ecp5-25k", tmp_path / "bitstream", None, silent)
+    assert not (tmp_path / "bitstream").exists()
 
 
 @pytest.mark.simulator
