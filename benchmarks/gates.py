@@ -32,13 +32,15 @@ def _full_adder(gates: GateBuilder, x: int, y: int, z: int) -> tuple[int, int]:
     return _exclusive_or(gates, half, z), gates.any([gates.both(x, y), gates.both(half, z)])
 
 
-def _network(gates: GateBuilder, width: int, outputs: list[int]) -> LogicModel:
-    ports = [f"i{place}" for place in range(width)], [f"o{place}" for place in range(len(outputs))]
-    return LogicModel(tuple(ports[0]), tuple(ports[1]), gates.array(), np.array(outputs, dtype=np.uint32))
+def network(gates: GateBuilder, width: int, outputs: list[int]) -> LogicModel:
+    """A model with the inputs ``i0`` … and the outputs ``o0`` … ."""
+    inputs = tuple(f"i{place}" for place in range(width))
+    names = tuple(f"o{place}" for place in range(len(outputs)))
+    return LogicModel(inputs, names, gates.array(), np.array(outputs, dtype=np.uint32))
 
 
 def multiplier(bits: int) -> LogicModel:
-    """An array multiplier of two words of so many bits."""
+    """Two numbers of so many bits, the first in the low inputs, to their product: rows of full adders."""
     gates = GateBuilder(2 * bits)
     left, right = ([2 * (1 + start + place) for place in range(bits)] for start in (0, bits))
     total = [*(gates.both(left[0], bit) for bit in right), 0]
@@ -50,7 +52,7 @@ def multiplier(bits: int) -> LogicModel:
             value, carry = _full_adder(gates, above, gates.both(bit, other), carry)
             following.append(value)
         total = [*following, carry]
-    return _network(gates, 2 * bits, outputs + total)
+    return network(gates, 2 * bits, outputs + total)
 
 
 def layers(inputs: int, width: int, depth: int, classes: int) -> LogicModel:
@@ -64,7 +66,7 @@ def layers(inputs: int, width: int, depth: int, classes: int) -> LogicModel:
         chosen = zip(pairs, kinds, strict=True)
         signals = [_gate(gates, signals[x], signals[y], kind) for (x, y), kind in chosen]
     outputs = [bit for group in range(classes) for bit in _count(gates, signals[group::classes])]
-    return _network(gates, inputs, outputs)
+    return network(gates, inputs, outputs)
 
 
 def _gate(gates: GateBuilder, x: int, y: int, kind: int) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.small_gates import multiplier
+from benchmarks.gates import multiplier
 from wnn2hdl.build import planning, simulating
 from wnn2hdl.build.capacity import require_capacity
 from wnn2hdl.build.compile import compile_model

@@ -3,7 +3,8 @@
 import pytest
 from hypothesis import given, settings
 
-from tests.small_gates import all_inputs, gate_networks, multiplier
+from benchmarks.gates import multiplier
+from tests.small_gates import all_inputs, gate_networks
 from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.ir.packing import packed_luts
 from wnn2hdl.lower.gates import network

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.small_gates import multiplier
+from benchmarks.gates import multiplier
 from wnn2hdl.errors import ToolError
 from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.verify.equivalence import Circuit
