@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.published import cpu_seconds
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.planning import CompileOptions, with_input
 from wnn2hdl.dataset.tables import FeatureTable, read_table
@@ -115,7 +116,7 @@ def measure(data: Path, name: str, effort: int) -> dict[str, Any]:
         "luts": parts["network"]["luts"],
         "encoder": parts["encoder"]["luts"],
         "proof": build.report["proof"]["status"],
-        "cpu": sum(resource.getrusage(each).ru_utime for each in who),
+        "cpu": cpu_seconds(),
         "memory": max(resource.getrusage(each).ru_maxrss for each in who) / 1024,
     }
 
