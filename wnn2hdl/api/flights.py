@@ -10,13 +10,14 @@ from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.conventions import require_aircraft_angles
 from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
 from wnn2hdl.apps.navigation.learned import Learned
-from wnn2hdl.apps.navigation.methods import METHODS
+from wnn2hdl.apps.navigation.methods import METHODS, engine_of
 from wnn2hdl.apps.navigation.poses import frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.apps.navigation.results import MethodResult, SearchKind
 from wnn2hdl.apps.navigation.summary import write_run
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import output_folder
+from wnn2hdl.ir.engine import Shape
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
 
@@ -88,6 +89,7 @@ def locate(
     *,
     calibrate: int | Learned | Path | str = 0,
     methods: Collection[str] = METHODS,
+    engine: tuple[Shape, Shape] | None = None,
     window_m: float | None = 95.0,
     whole_map: bool = True,
     heading_deg: float | None = None,
@@ -103,6 +105,7 @@ def locate(
         calibrate: so many frames are fitted on and not scored; or what an earlier run learned, or its
             ``calibration.json``; 0 takes everything as it is given.
         methods: keys of those that are compared.
+        engine: rows and columns of template and segment of the match engine that methods answer as.
         window_m: half the side of a window around the logged position that is searched; None for no window.
         whole_map: search the whole map, too.
         heading_deg: how far logged headings may be off; by default what the calibration found.
@@ -122,6 +125,8 @@ def locate(
         searches["map"] = None
     if not searches:
         raise InputError("nothing is to be searched", hint="give a window, or search the whole map")
+    template, segment = engine or (None, None)
+    answering = engine_of(template, segment, methods)
     with watched(progress) as report:
         flown = flight or Recording.embedded(seed)
         if isinstance(calibrate, int):
@@ -138,6 +143,7 @@ def locate(
             searches,
             report,
             keys=methods,
+            engine=answering,
             heading_deg=heading_deg,
             scale=height_share,
             jobs=jobs,

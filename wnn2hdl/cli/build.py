@@ -1,6 +1,5 @@
 """`compile`: a model becomes a build folder."""
 
-import re
 from pathlib import Path
 from typing import Any, get_args
 
@@ -11,7 +10,7 @@ from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import allow_unproved_option, file, folder, output_option
+from wnn2hdl.cli.options import SizeType, allow_unproved_option, file, folder, output_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
 from wnn2hdl.cli.pictures import (
     MASKS,
@@ -25,27 +24,10 @@ from wnn2hdl.cli.pictures import (
 from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style, VideoFormat
-from wnn2hdl.ir.engine import Shape
 from wnn2hdl.ir.models import load_model
 from wnn2hdl.ir.video import FORMATS, MAX_WIDTH, PIXELS_PER_CLOCK, Answer
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.schedule import MAX_STAGES
-
-
-class SizeType(click.ParamType[Shape]):
-    """Rows and columns of a picture."""
-
-    name = "ROWSxCOLUMNS"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Shape:
-        """The two numbers."""
-        if isinstance(value, tuple):
-            return value
-        found = re.fullmatch(r"(\d{1,9})x(\d{1,9})", str(value))
-        if found is None:
-            self.fail(f"{value!r} is not a size such as 220x220", param, ctx)
-        return int(found[1]), int(found[2])
-
 
 SECTIONS = {
     "Circuit": (

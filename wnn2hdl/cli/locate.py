@@ -8,16 +8,17 @@ import click
 
 from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.conventions import require_aircraft_angles
-from wnn2hdl.apps.navigation.methods import METHODS
+from wnn2hdl.apps.navigation.methods import ENGINE_METHODS, METHODS, engine_of
 from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import file, folder, jobs_option, output_option, seed_option
+from wnn2hdl.cli.options import SizeType, file, folder, jobs_option, output_option, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
 from wnn2hdl.cli.pictures import READING, reading_options
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import output_folder
+from wnn2hdl.ir.engine import Shape
 from wnn2hdl.raster import Reading
 
 if TYPE_CHECKING:
@@ -61,15 +62,24 @@ class MethodsType(click.ParamType[tuple[str, ...]]):
         if isinstance(value, tuple):
             return value
         keys = [key.strip() for key in str(value).split(",")]
-        unknown = [key for key in keys if key not in METHODS]
+        every = (*METHODS, *ENGINE_METHODS)
+        unknown = [key for key in keys if key not in every]
         if unknown:
-            self.fail(f"{unknown[0]!r} is not one of {', '.join(METHODS)}", param, ctx)
+            self.fail(f"{unknown[0]!r} is not one of {', '.join(every)}", param, ctx)
         return tuple(keys)
 
 
 SECTIONS = {
     "Flight": ("--map", *READING, "--frames", "--poses", "--camera", "--focal"),
-    "Search": ("--methods", "--search", "--window", "--heading-tolerance", "--height-tolerance"),
+    "Search": (
+        "--methods",
+        "--template",
+        "--segment",
+        "--search",
+        "--window",
+        "--heading-tolerance",
+        "--height-tolerance",
+    ),
     "Calibration": ("--calibrate", "--calibrate-frames", "--calibration"),
 }
 
@@ -102,8 +112,10 @@ SECTIONS = {
     "--methods",
     type=MethodsType(),
     default=METHODS,
-    help="Compare these methods.  [default: all]",
+    help="Compare these methods.  [default: all but match engines]",
 )
+@click.option("--template", type=SizeType(), help="Let a match engine take this much of a frame.")
+@click.option("--segment", type=SizeType(), help="Let it look for it in this much of the map.")
 @click.option(
     "--search",
     type=click.Choice(["window", "map", "both"]),
@@ -151,6 +163,8 @@ def locate_command(
     calibrate_frames: Path | None,
     calibration_file: Path | None,
     methods: tuple[str, ...],
+    template: Shape | None,
+    segment: Shape | None,
     search: str,
     window_m: float,
     heading_deg: float | None,
@@ -195,6 +209,7 @@ def locate_command(
         raise InputError(
             "--calibrate-frames goes with a CSV file in --calibrate", value=calibrate_frames, hint="give both"
         )
+    engine = engine_of(template, segment, methods)
     known = Learned.read(calibration_file) if calibration_file else None
     with output_folder(output, "flight"), progress() as report:
         if map_file and frames and poses_file:
@@ -225,6 +240,7 @@ def locate_command(
             searches,
             report,
             keys=methods,
+            engine=engine,
             heading_deg=heading_deg,
             scale=height_percent / 100,
             jobs=jobs,

@@ -1,5 +1,6 @@
 """Options that several commands share."""
 
+import re
 import shlex
 from collections.abc import Callable, Container, Iterable
 from pathlib import Path
@@ -13,6 +14,7 @@ from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.images import MaskFormat
+from wnn2hdl.ir.engine import Shape
 from wnn2hdl.raster import Reading
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
@@ -76,6 +78,21 @@ def square_option(text: str) -> Callable[[Decorated], Decorated]:
 def output_option(text: str, *, is_file: bool = False, **settings: Any) -> Callable[[Decorated], Decorated]:
     """The option that says where results go: a folder, or a file; with its help and click's settings."""
     return click.option("-o", "--output", "output", type=file if is_file else folder, help=text, **settings)
+
+
+class SizeType(click.ParamType[Shape]):
+    """Rows and columns of a picture."""
+
+    name = "ROWSxCOLUMNS"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Shape:
+        """The two numbers."""
+        if isinstance(value, tuple):
+            return value
+        found = re.fullmatch(r"(\d{1,9})x(\d{1,9})", str(value))
+        if found is None:
+            self.fail(f"{value!r} is not a size such as 220x220", param, ctx)
+        return int(found[1]), int(found[2])
 
 
 class BleachingType(click.ParamType[int | str]):

@@ -34,6 +34,14 @@ def test_what_one_flight_learned_the_next_takes(folder: Path) -> None:
     assert [fix.error_m for fix in again.methods["map"]["grey"].fixes] == [fix.error_m for fix in row.fixes]
 
 
+def test_a_match_engine_is_asked_for_with_its_sizes(folder: Path) -> None:
+    flight = recording(folder / "map.tif", folder / "frames", folder / "poses.csv", 120.0)
+    found = locate(flight, methods=["engine"], engine=((12, 12), (32, 32)), window_m=20.0, whole_map=False)
+    assert [row.name for row in found.methods["window"].values()] == ["match engine", "match engine, track"]
+    with pytest.raises(InputError, match="has a template and a segment"):
+        locate(flight, methods=["engine"])
+
+
 def test_a_flight_without_a_search_is_refused(folder: Path) -> None:
     with pytest.raises(InputError, match="nothing is to be searched"):
         locate(window_m=None, whole_map=False)

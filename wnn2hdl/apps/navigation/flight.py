@@ -26,6 +26,7 @@ from wnn2hdl.apps.navigation.results import FlightResult, MethodResult, SearchKi
 from wnn2hdl.apps.navigation.weightless import GSD_M, Sighting, by_rule, learn
 from wnn2hdl.edges import grey
 from wnn2hdl.errors import InputError
+from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.progress import Progress, reported
 
 T = TypeVar("T")
@@ -68,6 +69,7 @@ def run_flight(
     progress: Progress,
     *,
     keys: Collection[str] = METHODS,
+    engine: EngineFormat | None = None,
     heading_deg: float | None = None,
     scale: float = 0.0,
     jobs: int | None = None,
@@ -82,6 +84,7 @@ def run_flight(
             map.
         progress: called with how far the run is.
         keys: of the methods that are compared, at least one.
+        engine: that methods among them answer as, see `wnn2hdl.apps.navigation.methods.engine_of`.
         heading_deg: how far the logged headings may be off; by default what the calibration found, or 0.
         scale: share by which the logged heights may be off.
         jobs: frames located at a time; by default as many as the machine has cores.
@@ -113,7 +116,9 @@ def run_flight(
     def cameras_at(pose: Pose) -> tuple[Camera, ...]:
         return calibration.cameras_at(pose.frame) if calibration else (recording.camera,)
 
-    conditions = Conditions.of(recording.world, recording.camera, tolerance) if calibration else None
+    conditions = None
+    if calibration:
+        conditions = Conditions.of(recording.world, recording.camera, tolerance, engine)
     weightless = known.weightless if known else by_rule()
     if known and conditions:
         known.require(conditions, searches, keys)
@@ -122,7 +127,7 @@ def run_flight(
             _sighting(coarse, recording.read(pose), pose, cameras_at(pose)[0], tolerance) for pose in teachers
         )
         weightless = learn(coarse.image, coarse.valid, sightings)
-    methods = compared_methods(weightless, keys)
+    methods = compared_methods(weightless, keys, engine)
     navigator = Navigator({None: grid, GSD_M: coarse}, methods)
 
     def locate(pose: Pose) -> dict[Place, Located | None]:

@@ -9,6 +9,7 @@ from typing import Any, Self, get_args
 from wnn2hdl.apps.navigation.calibrate import Calibration, Fit
 from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.matching import Acceptance
+from wnn2hdl.apps.navigation.methods import ENGINE_METHODS
 from wnn2hdl.apps.navigation.navigator import Place, PoseTolerance
 from wnn2hdl.apps.navigation.poses import Pose
 from wnn2hdl.apps.navigation.results import SearchKind
@@ -16,6 +17,7 @@ from wnn2hdl.apps.navigation.weightless import WeightlessEdges
 from wnn2hdl.apps.navigation.world import WorldMap
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
+from wnn2hdl.ir.engine import EngineFormat
 
 VERSION = 1
 """Of the form of ``calibration.json``; a file of another one is refused."""
@@ -29,16 +31,20 @@ class Conditions:
         map: SHA-256 of the map: its pixels and where they lie.
         camera: as given, before it was fitted.
         tolerance: how far the log may be off.
+        engine: that methods answer as; None if none of them does.
     """
 
     map: str
     camera: Camera
     tolerance: PoseTolerance
+    engine: EngineFormat | None = None
 
     @classmethod
-    def of(cls, world: WorldMap, camera: Camera, tolerance: PoseTolerance) -> Self:
+    def of(
+        cls, world: WorldMap, camera: Camera, tolerance: PoseTolerance, engine: EngineFormat | None
+    ) -> Self:
         """The conditions of a flight."""
-        return cls(world.digest(), camera, tolerance)
+        return cls(world.digest(), camera, tolerance, engine)
 
 
 @dataclass(frozen=True)
@@ -142,7 +148,10 @@ class Learned:
                 acceptances[kind, method] = Acceptance(**numbers)
         return cls(
             Conditions(
-                _text(given["map"]), Camera.of_table(given["camera"], path), PoseTolerance(**tolerance)
+                _text(given["map"]),
+                Camera.of_table(given["camera"], path),
+                PoseTolerance(**tolerance),
+                EngineFormat.from_json(given["engine"]) if given.get("engine") else None,
             ),
             poses,
             calibration,
@@ -175,6 +184,9 @@ class Learned:
         }
         pairs["--heading-tolerance"] = (known.tolerance.heading_deg, conditions.tolerance.heading_deg)
         pairs["--height-tolerance"] = (known.tolerance.scale * 100, conditions.tolerance.scale * 100)
+        if any(method in ENGINE_METHODS for method in methods):
+            for size in ("template", "segment"):
+                pairs[f"--{size}"] = _size(known.engine, size), _size(conditions.engine, size)
         for kind, half in windows.items():
             if kind not in self.windows:
                 raise InputError(
@@ -198,6 +210,10 @@ class Learned:
                 value=missing[0],
                 hint="leave it out with --methods, or calibrate with it",
             )
+
+
+def _size(engine: EngineFormat | None, name: str) -> str:
+    return "none" if engine is None else "x".join(map(str, getattr(engine, name)))
 
 
 def _fit(fields: dict[str, Any]) -> Fit:

@@ -2,18 +2,22 @@
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.apps.navigation.binarise import shrunk
+from wnn2hdl.apps.navigation.binarise import binary_images, shrunk
 from wnn2hdl.apps.navigation.channels import ChannelIndex, Channels
-from wnn2hdl.apps.navigation.matching import MapIndex, Match, Picture, Score, Window
-from wnn2hdl.apps.navigation.weightless import WeightlessEdges
-from wnn2hdl.edges import canny, grey, sobel
+from wnn2hdl.apps.navigation.matching import MapIndex, Match, Picture, Score, SegmentIndex, Window
+from wnn2hdl.apps.navigation.weightless import GSD_M, WeightlessEdges
+from wnn2hdl.edges import boundary, canny, grey, sobel
 from wnn2hdl.edges.reference import CANNY_SIGMA
+from wnn2hdl.errors import InputError
+from wnn2hdl.ir import window_codes
+from wnn2hdl.ir.engine import EngineFormat, Shape
 
 EDGE_SHARE = 0.2
 """Share of a picture's pixels whose gradient reaches the threshold of Sobel, and the lower one of Canny."""
@@ -69,12 +73,53 @@ WEIGHTLESS = "perspective-weightless"
 """Key of the project's own method."""
 
 METHODS = ("perspective-canny", "rotation-canny", WEIGHTLESS, "perspective-sobel", "grey")
-"""Keys of the methods, in the order of the tables."""
+"""Keys of the methods that are compared by default, in the order of the tables."""
+
+ENGINE_METHODS = ("engine", "engine-edges")
+"""Keys of the methods that answer as a match engine does, whose sizes have to be given."""
 
 
-def compared_methods(weightless: WeightlessEdges, keys: Collection[str] = METHODS) -> tuple[Method, ...]:
-    """The rows of these keys, with weightless edges that were learned or chosen before."""
-    rows = (
+def engine_of(template: Shape | None, segment: Shape | None, keys: Collection[str]) -> EngineFormat | None:
+    """The engine that methods answer as; None if none of them does.
+
+    Args:
+        template: rows and columns, in pixels of `GSD_M`.
+        segment: the same.
+        keys: of the methods that are compared.
+
+    Raises:
+        InputError: sizes are missing, are not for any of the methods, or there is no such engine.
+    """
+    asked = [key for key in keys if key in ENGINE_METHODS]
+    if template is None and segment is None and not asked:
+        return None
+    if not asked:
+        raise InputError(
+            "--template and --segment are for a match engine", hint=f"give --methods {ENGINE_METHODS[0]}"
+        )
+    if template is None or segment is None:
+        raise InputError(
+            "a match engine has a template and a segment",
+            value=asked[0],
+            hint=f"give both --template and --segment, in pixels of {GSD_M:g} m: 32x32 and 128x128",
+        )
+    try:
+        return EngineFormat(template, segment, lanes=1, columns=template[1])
+    except ValueError as error:
+        raise InputError("there is no such match engine", value=error, hint="give other sizes") from error
+
+
+def compared_methods(
+    weightless: WeightlessEdges, keys: Collection[str] = METHODS, engine: EngineFormat | None = None
+) -> tuple[Method, ...]:
+    """The rows of these keys.
+
+    Args:
+        weightless: edges that were learned or chosen before.
+        keys: of the rows.
+        engine: sizes of the match engine that `ENGINE_METHODS` answer as; None if none of them is wanted.
+    """
+    rows: tuple[Method, ...] = (
         Method("perspective-canny", "perspective + Canny", canny_edges),
         Method("rotation-canny", "rotation + Canny", canny_edges, perspective=False),
         Method(
@@ -87,6 +132,13 @@ def compared_methods(weightless: WeightlessEdges, keys: Collection[str] = METHOD
         Method("perspective-sobel", "perspective + Sobel", sobel_edges),
         Method("grey", "perspective + grey levels", grey_levels),
     )
+    if engine is not None:
+        index = partial(SegmentIndex, engine=engine)
+        describe = partial(brighter, side=weightless.side), partial(outlines, side=weightless.side)
+        rows += (
+            Method("engine", "match engine", describe[0], index, gsd_m=weightless.gsd_m),
+            Method("engine-edges", "match engine, edges", describe[1], index, gsd_m=weightless.gsd_m),
+        )
     return tuple(row for row in rows if row.key in keys)
 
 
@@ -130,3 +182,22 @@ def grey_levels(
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
     """The picture in grey, without any edges."""
     return grey(picture), valid
+
+
+def brighter(
+    picture: NDArray[np.uint8], valid: NDArray[np.bool_], *, side: int
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Where red exceeds its mean over the square of ``side`` pixels around, one bit per pixel.
+
+    About half of the bits are set, wherever it is, so that plain counts of agreeing bits favour no place.
+    """
+    return binary_images(picture, valid, side)[0], valid
+
+
+def outlines(
+    picture: NDArray[np.uint8], valid: NDArray[np.bool_], *, side: int
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """The edges of `brighter`, by the edge filter that video cores have by default."""
+    bits, _ = brighter(picture, valid, side=side)
+    inside = shrunk(valid, 1)
+    return np.pad(boundary().evaluate(window_codes(bits)), 1) & inside, inside

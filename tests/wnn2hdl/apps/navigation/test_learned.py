@@ -16,6 +16,7 @@ from wnn2hdl.apps.navigation.matching import Acceptance
 from wnn2hdl.apps.navigation.methods import METHODS, WEIGHTLESS
 from wnn2hdl.apps.navigation.navigator import PoseTolerance
 from wnn2hdl.errors import InputError, ModelFileError
+from wnn2hdl.ir.engine import EngineFormat
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +68,23 @@ def test_another_camera_window_or_method_is_refused(learned: Learned) -> None:
     some = {place: one for place, one in learned.acceptances.items() if place[1] != "grey"}
     with pytest.raises(InputError, match="no threshold for a method: grey"):
         replace(learned, acceptances=some).require(learned.conditions, learned.windows, METHODS)
+
+
+def test_an_engine_of_other_sizes_is_refused(learned: Learned, tmp_path: Path) -> None:
+    engine = EngineFormat((32, 32), (128, 128), lanes=1, columns=32)
+    known = replace(
+        learned,
+        conditions=replace(learned.conditions, engine=engine),
+        acceptances={**learned.acceptances, ("map", "engine"): Acceptance(1.0, 1.0, 1.0)},
+    )
+    known.write(tmp_path / "calibration.json")
+    read = Learned.read(tmp_path / "calibration.json")
+    assert read.conditions == known.conditions
+    read.require(known.conditions, {"map": None}, ["engine"])
+    larger = replace(known.conditions, engine=replace(engine, segment=(128, 256)))
+    with pytest.raises(InputError, match="--segment was 128x128, and now is 128x256"):
+        read.require(larger, {"map": None}, ["engine"])
+    read.require(larger, {"map": None}, ["grey"])
 
 
 def test_other_files_are_refused(learned: Learned, tmp_path: Path) -> None:

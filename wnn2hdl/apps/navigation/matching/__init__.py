@@ -4,6 +4,7 @@ from wnn2hdl.apps.navigation.matching.confidence import Acceptance, choose_thres
 from wnn2hdl.apps.navigation.matching.index import MapIndex
 from wnn2hdl.apps.navigation.matching.peaks import Match, Peak, Window
 from wnn2hdl.apps.navigation.matching.scores import Picture, Score
+from wnn2hdl.apps.navigation.matching.segments import SegmentIndex
 
 __all__ = [
     "Acceptance",
@@ -12,6 +13,7 @@ __all__ = [
     "Peak",
     "Picture",
     "Score",
+    "SegmentIndex",
     "Window",
     "choose_threshold",
     "peak_weights",
