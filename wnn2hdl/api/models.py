@@ -21,6 +21,7 @@ from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.models import AnyModel, LogicModel, load_model
 from wnn2hdl.progress import Progress
 from wnn2hdl.training.budget import train_under_budget
+from wnn2hdl.training.context import train_context
 from wnn2hdl.training.discriminators import train as train_discriminators
 from wnn2hdl.training.discriminators import with_colours
 from wnn2hdl.training.gradient import Architecture, Recipe, enough_epochs, train_network, usual_heat
@@ -103,6 +104,7 @@ def train(
     *,
     luts_per_pixel: int | None = None,
     neighbourhood: int | None = None,
+    context: int | None = None,
     bits: str | None = None,
     address_bits: int = 4,
     rams: int = 16,
@@ -121,6 +123,7 @@ def train(
             indices, 0 forest and 1 deforested, 255 not labelled.
         luts_per_pixel: train the most accurate classifier within so many LUTs, not discriminators.
         neighbourhood: train a classifier that looks at the 3x3 or 5x5 pixels around; 3 or 5.
+        context: train a classifier that counts bits in the square around; 3, 7, 15 or 31.
         bits: of a colour that discriminators read, as in ``"R7,R6,G7"``; by default four high bits of each
             channel.
         address_bits: n, of each RAM of a discriminator.
@@ -140,6 +143,8 @@ def train(
             model = train_neighbourhood(
                 dataset, neighbourhood, luts_per_pixel=luts_per_pixel, seed=seed, progress=report
             )
+        elif context is not None:
+            model = train_context(dataset, context, seed=seed, progress=report)
         elif luts_per_pixel is not None:
             model = train_under_budget(dataset, luts_per_pixel, trials=trials, seed=seed, progress=report)
         else:

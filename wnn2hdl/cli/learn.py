@@ -52,12 +52,14 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir.context import SIZES
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
 from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
+from wnn2hdl.training.context import train_context
 from wnn2hdl.training.discriminators import train, with_colours
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 from wnn2hdl.training.tables import TableOptions
@@ -98,7 +100,7 @@ class Discriminators:
 
 
 IMAGES = ("--images", "--masks", *MASKS, *READING, "--regions", "--chips")
-OTHERS = ("--luts-per-pixel", "--nested", "--neighbourhood", "--pareto", "--trials")
+OTHERS = ("--luts-per-pixel", "--nested", "--neighbourhood", "--context", "--pareto", "--trials")
 
 DISCRIMINATORS = ("--bits", "--address-bits", "--rams", "--bleach", "--balance")
 
@@ -160,6 +162,11 @@ SECTIONS = {
     type=click.Choice(["3", "5"]),
     help="Classify pixels by the 3x3 or 5x5 around them.",
 )
+@click.option(
+    "--context",
+    type=click.Choice([str(size) for size in SIZES]),
+    help="Classify pixels by counts in the NxN around them.",
+)
 @click.option("--pareto", is_flag=True, help="Write each best model by LUTs and accuracy.")
 @click.option(
     "--trials",
@@ -187,6 +194,7 @@ def train_command(
     luts_per_pixel: int | None,
     nested: bool,
     neighbourhood: str | None,
+    context: str | None,
     pareto: bool,
     trials: int,
     seed: int,
@@ -242,6 +250,8 @@ def train_command(
         images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
     )
     chosen = Discriminators(**discriminators)
+    if context is not None:
+        refuse(("--luts-per-pixel", "--neighbourhood", "--pareto"), "--context chooses the classifier itself")
     if luts_per_pixel is None or neighbourhood is not None or pareto:
         refuse(("--nested",), "only a choice within --luts-per-pixel is nested")
     # Before the training, so that a place that cannot be written is reported at once.
@@ -261,6 +271,9 @@ def train_command(
             model = train_neighbourhood(
                 dataset, int(neighbourhood), luts_per_pixel=luts_per_pixel, seed=seed, progress=report
             )
+        elif context is not None:
+            chosen.require_none("--context")
+            model = train_context(dataset, int(context), seed=seed, progress=report)
         elif luts_per_pixel is not None:
             chosen.require_none("--luts-per-pixel")
             model = train_under_budget(

@@ -12,7 +12,7 @@ from wnn2hdl.evaluation.accuracy import labelled_answers, require_same_classes
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.evaluation.measures import accuracy, confusion_of, interval
 from wnn2hdl.images import exposed, hazed
-from wnn2hdl.ir import BitSelect, Comparison, Neighbourhood, PictureEncoder
+from wnn2hdl.ir import BitSelect, Comparison, Context, Neighbourhood, PictureEncoder
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS, CHANNELS, PIXEL_BIT_NAMES
 from wnn2hdl.progress import Progress, reported
 
@@ -149,11 +149,12 @@ def unread_high_bits(encoder: PictureEncoder) -> tuple[str, ...]:
     """
     if isinstance(encoder, Neighbourhood):
         return tuple(sorted({bit for tap in encoder.taps for bit in unread_high_bits(tap.pixel)}))
-    read = set(encoder.bits)
+    names = encoder.planes if isinstance(encoder, Context) else encoder.bits
+    read = set(names)
     if not isinstance(encoder, BitSelect):
         read = {
             bit
-            for name in encoder.bits
+            for name in names
             for bit in ((name,) if name in PIXEL_BIT_NAMES else Comparison.parse(name).bits)
         }
     unread = []

@@ -1,6 +1,7 @@
 """The contract between stages: encoders, models, tables, covers, LUT networks, windows and their files."""
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS, all_codes, bits_to_codes, codes_to_bits, spread_codes
+from wnn2hdl.ir.context import Context
 from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
 from wnn2hdl.ir.encoder import Encoder, Neighbourhood, PictureEncoder, Tap
 from wnn2hdl.ir.equation import Equation, equation
@@ -38,6 +39,7 @@ __all__ = [
     "BitSelect",
     "Column",
     "Comparison",
+    "Context",
     "Cover",
     "Cube",
     "EdgeFilter",

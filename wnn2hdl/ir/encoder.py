@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
+from wnn2hdl.ir.context import Context
 from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, ThermometerBits, Words
 from wnn2hdl.ir.pixel_bits import BitSelect
 from wnn2hdl.ir.relational import PixelEncoder, Relational
@@ -118,7 +119,7 @@ class Neighbourhood:
         return {"kind": self.kind, "size": self.size, "taps": taps}
 
 
-PictureEncoder = PixelEncoder | Neighbourhood
+PictureEncoder = PixelEncoder | Neighbourhood | Context
 """What makes codes of pictures; its ``halo`` is how many pixels at a picture's rim have none."""
 
 Encoder = PictureEncoder | FeatureEncoder
@@ -134,6 +135,8 @@ def encoder_from_json(data: dict[str, Any]) -> Encoder:
         return BitSelect(tuple(data["bits"]))
     if data["kind"] == Relational.kind:
         return Relational(tuple(data["bits"]))
+    if data["kind"] == Context.kind:
+        return Context(tuple(data["bits"]))
     if data["kind"] == Neighbourhood.kind:
         taps = (
             Tap(tap["row"], tap["column"], BitSelect(tuple(tap["bits"])), int(tap["contents"], 16))

@@ -203,10 +203,11 @@ def pixel_encoder(model: WisardModel) -> PixelEncoder:
     """
     encoder = picture_encoder(model)
     if not isinstance(encoder, PixelEncoder):
+        side = 2 * encoder.halo + 1
         raise InputError(
             "the model looks at more than one pixel",
-            value=f"at {encoder.size}x{encoder.size}",
-            hint="use one that was trained without --neighbourhood",
+            value=f"at {side}x{side}",
+            hint="use one that was trained without --neighbourhood and --context",
         )
     return encoder
 

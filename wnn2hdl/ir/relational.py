@@ -213,10 +213,13 @@ class Relational(NamedBits):
 
 
 def signal_name(name: str) -> str:
-    """The name of a code bit as an identifier: ``is_3R_7_1_ge_2B_plus_4`` for ``3R[7:1]>=2B+4``."""
+    """The name of a code bit as an identifier: ``is_3R_7_1_ge_2B_plus_4`` for ``3R[7:1]>=2B+4``.
+
+    That of a count in a square (`wnn2hdl.ir.context`) likewise: ``is_7x7_R7_ge_13`` for ``7x7(R7)>=13``.
+    """
     if ">=" not in name:
         return name
-    words = {">=": "_ge_", "+": "_plus_", "-": "_minus_", "[": "_", ":": "_", "]": ""}
+    words = {">=": "_ge_", "+": "_plus_", "-": "_minus_", "[": "_", ":": "_", "]": "", "(": "_", ")": ""}
     for sign, word in words.items():
         name = name.replace(sign, word)
     return f"is_{name.replace('__', '_')}"

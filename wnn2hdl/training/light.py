@@ -19,16 +19,20 @@ NOISE = 0.5
 """Standard deviation of each channel's own noise, in levels."""
 
 
-def varied(pixels: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
+def varied(
+    pixels: NDArray[np.uint8], rng: np.random.Generator, *, together: bool = False
+) -> NDArray[np.uint8]:
     """Each pixel under light of its own: haze, gamma, exposure and white balance, noise, and saturation.
 
     Args:
         pixels: uint8 ``[n, 3]``.
         rng: draws the light.
+        together: all pixels are under the same light, and have noise of their own.
     """
-    each, channels = (len(pixels), 1), pixels.shape
+    lights = 1 if together else len(pixels)
+    each, channels = (lights, 1), (lights, 3)
     ground = np.clip(pixels + rng.normal(0, HAZE, each), 0, 255) / 255
     curved = ground ** np.exp(rng.normal(0, GAMMA, each))
     light = np.exp(rng.uniform(np.log(LEAST), np.log(MOST), each) + rng.normal(0, WHITE_BALANCE, channels))
-    levels = 255 * curved * light + rng.normal(0, NOISE, channels)
+    levels = 255 * curved * light + rng.normal(0, NOISE, pixels.shape)
     return np.asarray(np.clip(np.floor(levels + 0.5), 0, 255).astype(np.uint8))

@@ -124,6 +124,15 @@ def test_options_that_a_neighbourhood_has_no_use_for_are_refused(run: Run, tmp_p
     assert "takes 13 LUTs: 4 allowed" in train("--luts-per-pixel", "4")
 
 
+def test_options_that_a_context_has_no_use_for_are_refused(run: Run, tmp_path: Path) -> None:
+    def train(*words: object) -> str:
+        return str(run("train", "--context", 7, "-o", tmp_path / "m.json", *words).complaint())
+
+    assert "--context chooses the classifier itself: --bits" in train("--bits", "R7")
+    assert "--context chooses the classifier itself: --luts-per-pixel" in train("--luts-per-pixel", "4")
+    assert "--context chooses the classifier itself: --neighbourhood" in train("--neighbourhood", "3")
+
+
 def test_pixels_left_out_are_reported_and_the_command_can_be_repeated(
     run: Run, folders: tuple[Path, Path], tmp_path: Path
 ) -> None:

@@ -15,7 +15,7 @@ from wnn2hdl.evaluation.light import (
     worst_image,
 )
 from wnn2hdl.images import UNLABELLED, Picture
-from wnn2hdl.ir import Neighbourhood, Relational, Tap
+from wnn2hdl.ir import Context, Neighbourhood, Relational, Tap
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -94,6 +94,7 @@ def test_bits_above_those_that_are_read_wrap_around() -> None:
     assert unread_high_bits(parse_bits("R6,R5,B7")) == ("R7",)
     assert unread_high_bits(parse_bits("R7,G5")) == ("G7", "G6")
     assert unread_high_bits(Relational(("R7", "3R[6:0]>=4B[6:1]"))) == ("B7",)
+    assert unread_high_bits(Context(("R7", "3x3(3R[6:0]>=4B[6:1])>=5"))) == ("B7",)
     assert unread_high_bits(Relational(("3R>=2B",))) == ()
     taps = (Tap(0, 0, parse_bits("R7"), 0b10), Tap(1, 1, parse_bits("R6"), 0b10))
     assert unread_high_bits(Neighbourhood(3, taps)) == ("R7",)
