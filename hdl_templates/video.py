@@ -19,17 +19,48 @@ there are no more, and the pixels before the next TUSER are thrown away. What fo
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, ResetInserter, Signal, Value
 from amaranth.lib.wiring import In, Out
 
+from hdl_templates.across import across
 from hdl_templates.hierarchy import Part, place
-from hdl_templates.scan import HEIGHT_BITS, scan
+from hdl_templates.scan import HEIGHT_BITS, Pixels, scan
 from hdl_templates.stream import queued
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, VideoFormat
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
 from wnn2hdl.ir.video import ANSWER_BITS
+from wnn2hdl.ir.window import SIDE
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """How a pixel is classified by what was found of the pixels around it.
+
+    Attributes:
+        size: rows and columns of the window, odd.
+        taps: for each bit of a code which bit of a pixel's value it is, and the row and the column of the
+            pixel in the window.
+        parts: the circuit of a code, once for each pixel of a beat: one input, and one output, the class.
+    """
+
+    size: int
+    taps: Sequence[tuple[int, int, int]]
+    parts: Sequence[Part]
+
+    @property
+    def seen(self) -> list[tuple[int, int]]:
+        """The different bits of columns that are seen: of a value, and how many lines above the newest."""
+        return sorted({(bit, self.size - 1 - row) for bit, row, _ in self.taps})
+
+    def kept(self, bits: int) -> list[int]:
+        """For each of the bits of a value how many lines above the newest one are kept.
+
+        At least one, which is repeated below the last.
+        """
+        return [max(1, *(line for seen, line in self.seen if seen == bit)) for bit in range(bits)]
 
 
 class VideoCore(Part):
@@ -38,14 +69,15 @@ class VideoCore(Part):
     Args:
         video: what goes in and what comes out.
         pixels: the circuit of a pixel, once for each pixel of a beat: the input ``rgb`` and one output, its
-            value.
+            value: its class, or what there is to find of it with ``neighbours``.
         windows: likewise the circuit of a 3x3 window of such values, or of one bit each that says whether the
             value is not 0: one input, and one output of one bit. None where no edge is asked for.
+        neighbours: how classes follow from the pixels around a pixel; None where each has its own.
 
     Members:
         aresetn: In, synchronous reset, active low.
         height: In, the most lines of a frame, read while none passes; 0 means 4096. It has to stand three
-            cycles before a frame's first beat. Only where edges are sent.
+            cycles before a frame's first beat. Only where the core keeps lines.
         s_axis_video_*: the stream of pixels.
         m_axis_video_*: the stream of answers.
 
@@ -57,19 +89,39 @@ class VideoCore(Part):
     clock = "aclk"
     module_name = "video"
 
-    def __init__(self, *, video: VideoFormat, pixels: Sequence[Part], windows: Sequence[Part]) -> None:
-        if len(pixels) != video.pixels_per_clock or len(windows) != video.pixels_per_clock * video.has_edges:
+    def __init__(
+        self,
+        *,
+        video: VideoFormat,
+        pixels: Sequence[Part],
+        windows: Sequence[Part],
+        neighbours: Neighbours | None = None,
+    ) -> None:
+        wanted = video.pixels_per_clock
+        if (
+            len(pixels) != wanted
+            or len(windows) != wanted * video.has_edges
+            or (neighbours is not None and len(neighbours.parts) != wanted)
+        ):
             raise ValueError(
                 "a core needs a circuit for each pixel of a beat, and one for each edge it sends"
             )
-        self.video, self.pixels, self.windows = video, tuple(pixels), tuple(windows)
+        self.video, self.neighbours = video, neighbours
+        self.pixels, self.windows = tuple(pixels), tuple(windows)
         members = {
             "aresetn": In(1),
             "height": In(HEIGHT_BITS),
             **_stream("s_axis_video", video.pixel_bits * len(pixels), In, Out),
             **_stream("m_axis_video", ANSWER_BITS * len(pixels), Out, In),
         }
-        super().__init__({name: member for name, member in members.items() if name != "height" or windows})
+        super().__init__(
+            {name: member for name, member in members.items() if name != "height" or self.has_lines}
+        )
+
+    @property
+    def has_lines(self) -> bool:
+        """Whether it keeps lines, and so counts them."""
+        return bool(self.windows) or self.neighbours is not None
 
     @property
     def places(self) -> int:
@@ -81,7 +133,7 @@ class VideoCore(Part):
         """See `Part.summary`."""
         what = {"class": "classes", "edge": "edges", "both": "classes and edges"}[self.video.answer]
         rate = "a pixel" if len(self.pixels) == 1 else f"{len(self.pixels)} pixels"
-        lines = f", of lines of up to {self.video.max_width} pixels" if self.windows else ""
+        lines = f", of lines of up to {self.video.max_width} pixels" if self.has_lines else ""
         return f"AXI4-Stream Video: {what}, {rate} per clock{lines}."
 
     @property
@@ -116,7 +168,7 @@ class VideoCore(Part):
             m.d.comb += part.rgb.eq(self._rgb(words.word_select(number, self.video.pixel_bits)))
         latency = self.pixels[0].latency
         start, last = self.s_axis_video_tuser, self.s_axis_video_tlast
-        taken, moves = Signal(name="taken"), Signal(name="moves")
+        taken = Signal(name="taken")
         head = queued(
             m,
             "pixels",
@@ -126,54 +178,117 @@ class VideoCore(Part):
             latency=latency,
             taken=taken,
         )
-        if not self.windows:
-            values = [
-                head.word[2:].word_select(number, len(_output(part)))
-                for number, part in enumerate(self.pixels)
-            ]
+        pixels = Pixels(head.valid, head.word[0], head.word[1], None, _split(head.word[2:], self.pixels))
+        if self.neighbours is not None:
+            pixels, taken = self._look_around(m, pixels, taken, self.neighbours, reset, platform)
+        if self.windows:
+            self._find_edges(m, pixels, taken, reset, platform)
+        else:
             m.d.comb += taken.eq(self.m_axis_video_tready)
-            self._answer(m, head.valid, head.word[:2], values)
-            return ResetInserter(reset)(m)
+            self._answer(m, pixels.valid, pixels.start, pixels.last, pixels.values)
+        return ResetInserter(reset)(m)
 
-        depth = len(_input(self.windows[0])) // WINDOW_BITS
-        beat = scan(
+    def _look_around(
+        self,
+        m: Module,
+        pixels: Pixels,
+        taken: Signal,
+        neighbours: Neighbours,
+        reset: Value,
+        platform: object,
+    ) -> tuple[Pixels, Signal]:
+        """The classes of pixels by what was found of them and their neighbours, and who is to take them."""
+        reach, moves = neighbours.size // 2, Signal(name="near_moves")
+        columns = scan(
             m,
-            head,
-            pixels=len(self.pixels),
-            depth=depth,
+            "near_",
+            pixels,
+            reach=reach,
+            kept=neighbours.kept(len(pixels.values[0])),
             places=self.places,
             height=self.height,
             reset=reset,
             moves=moves,
             taken=taken,
         )
-        for number, (part, window) in enumerate(zip(self.windows, beat.windows, strict=True)):
+        seen = neighbours.seen
+        words = [Cat(*(bits[bit][line] for bit, line in seen)) for bits in columns.bits]
+        found = across(m, "near_", columns, words, (), reach=reach, moves=moves)
+        for number, (part, window) in enumerate(zip(neighbours.parts, found.words, strict=True)):
+            place(m, f"decision_{number}", part, platform)
+            code = [
+                window[column][seen.index((bit, 2 * reach - row))] for bit, row, column in neighbours.taps
+            ]
+            m.d.comb += _input(part).eq(Cat(*code))
+        latency = neighbours.parts[0].latency
+        marks = _delayed(m, "classes", latency, found.start, found.last, found.final)
+        leaves = Signal(name="classes_taken")
+        head = queued(
+            m,
+            "classes",
+            valid=found.valid,
+            ready=moves,
+            word=Cat(*marks, *map(_output, neighbours.parts)),
+            latency=latency,
+            taken=leaves,
+        )
+        start, last, final = head.word[:3]
+        return Pixels(head.valid, start, last, final, _split(head.word[3:], neighbours.parts)), leaves
+
+    def _find_edges(self, m: Module, pixels: Pixels, taken: Signal, reset: Value, platform: object) -> None:
+        """The edges between pixels, and the answers."""
+        depth, bits = len(_input(self.windows[0])) // WINDOW_BITS, len(pixels.values[0])
+        # What is sent is kept of the line in the middle, what windows see of two lines.
+        sends, looks = 0 if self.video.answer == "edge" else bits, bits
+        if depth == bits:
+            values, kept = pixels.values, [2] * bits
+        else:
+            values, kept = [Cat(value[:sends], value.any()) for value in pixels.values], [1] * sends + [2]
+            looks = len(kept)
+        moves = Signal(name="moves")
+        columns = scan(
+            m,
+            "",
+            replace(pixels, values=values),
+            reach=1,
+            kept=kept,
+            places=self.places,
+            height=self.height if pixels.final is None else None,
+            reset=reset,
+            moves=moves,
+            taken=taken,
+        )
+        words = [
+            Cat(*(bits[bit][line] for line in reversed(range(SIDE)) for bit in range(looks - depth, looks)))
+            for bits in columns.bits
+        ]
+        sent = [Cat(*(bits[bit][1] for bit in range(sends))) for bits in columns.bits if sends]
+        beat = across(m, "", columns, words, sent, reach=1, moves=moves)
+        for number, (part, window) in enumerate(zip(self.windows, beat.words, strict=True)):
             place(m, f"window_{number}", part, platform)
-            m.d.comb += _input(part).eq(window)
+            rows = [column.word_select(row, depth) for row in range(SIDE) for column in window]
+            m.d.comb += _input(part).eq(Cat(*rows))
         latency = self.windows[0].latency
-        sent = [] if self.video.answer == "edge" else beat.values
+        delayed = _delayed(m, "answers", latency, beat.start, beat.last, *beat.sent)
         answers = queued(
             m,
             "answers",
             valid=beat.valid,
             ready=moves,
-            word=Cat(
-                *_delayed(m, "answers", latency, beat.start, beat.last, *sent), *map(_output, self.windows)
-            ),
+            word=Cat(*delayed, *map(_output, self.windows)),
             latency=latency,
             taken=self.m_axis_video_tready,
         )
-        edges = answers.word[-len(self.windows) :]
-        if self.video.answer == "edge":
-            values = [edge.replicate(ANSWER_BITS) for edge in edges]
+        start, last, found = answers.word[0], answers.word[1], answers.word[2:]
+        edges = found[-len(self.windows) :]
+        if not sends:
+            answered = [edge.replicate(ANSWER_BITS) for edge in edges]
         else:
-            bits = len(beat.values[0])
-            values = [
-                Cat(answers.word[2:].word_select(number, bits), Const(0, ANSWER_BITS - 1 - bits), edge)
+            answered = [
+                Cat(found.word_select(number, sends), Const(0, ANSWER_BITS - 1 - sends), edge)
                 for number, edge in enumerate(edges)
             ]
-        self._answer(m, answers.valid, answers.word[:2], values)
-        return ResetInserter(reset)(m)
+        self._answer(m, answers.valid, start, last, answered)
 
     def _rgb(self, word: Value) -> Value:
         """The pixel that a word of the stream stands for, as its circuit reads it."""
@@ -184,11 +299,11 @@ class VideoCore(Part):
         }
         return Cat(*(channels[channel] for channel in reversed(CHANNELS)))
 
-    def _answer(self, m: Module, valid: Value, marks: Value, values: Sequence[Value]) -> None:
+    def _answer(self, m: Module, valid: Value, start: Value, last: Value, values: Sequence[Value]) -> None:
         m.d.comb += [
             self.m_axis_video_tvalid.eq(valid),
-            self.m_axis_video_tuser.eq(marks[0]),
-            self.m_axis_video_tlast.eq(marks[1]),
+            self.m_axis_video_tuser.eq(start),
+            self.m_axis_video_tlast.eq(last),
             *(
                 self.m_axis_video_tdata.word_select(number, ANSWER_BITS).eq(value)
                 for number, value in enumerate(values)
@@ -205,6 +320,11 @@ def _stream(name: str, width: int, forward: Any, back: Any) -> dict[str, Any]:
         f"{name}_tuser": forward(1),
         f"{name}_tlast": forward(1),
     }
+
+
+def _split(words: Value, parts: Sequence[Part]) -> list[Value]:
+    """The words side by side that came out of circuits."""
+    return [words.word_select(number, len(_output(part))) for number, part in enumerate(parts)]
 
 
 def _input(part: Part) -> Value:

@@ -110,7 +110,7 @@ def _bench(core: VideoCore, beats: Beats, progress: Progress | None) -> Any:
 
     async def bench(ctx: Any) -> None:
         ctx.set(core.aresetn, 0)
-        if core.windows:
+        if core.has_lines:
             ctx.set(core.height, beats.height % (1 << HEIGHT_BITS))
         await ctx.tick()
         ctx.set(core.aresetn, 1)

@@ -59,7 +59,7 @@ def test_the_testbench_passes_and_finds_a_border_of_zeros(video: Path, tmp_path:
     top = files.testbench.stem
     assert "PASS" in run_icarus(sources, top, cwd=tmp_path, timeout=60).output
     text = files.verilog.read_text()
-    wrong = text.replace("if (newest_last) right <= newest_0", "if (newest_last) right <= 3'h0")
+    wrong = text.replace("if (newest_last) right_1 <= newest_0", "if (newest_last) right_1 <= 3'h0")
     assert wrong != text
     (tmp_path / "wrong.v").write_text(wrong)
     with pytest.raises(ToolError) as failed:
