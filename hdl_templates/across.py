@@ -68,7 +68,10 @@ def across(
         return _Beat(
             register(f"{where}_valid", reset_less=False),
             [register(f"{where}_{pixel}", width) for pixel in range(pixels)],
-            *(register(f"{where}_{what}") for what in ("first", "last", "start", "final")),
+            register(f"{where}_first"),
+            register(f"{where}_last"),
+            register(f"{where}_start"),
+            register(f"{where}_final"),
             [register(f"{where}_value_{place}", len(value)) for place, value in enumerate(sent)],
         )
 

@@ -299,7 +299,9 @@ def _lines(
     word = Signal(1 + pixels * sum(kept), name=f"{name}kept")
     above = Signal(len(word), name=f"{name}above", reset_less=True)
     ended = above[0]
-    m.d.comb += done.eq(slot.valid & slot.flush & ended)
+    # A line that was longer than the memory may have lost its end, where lines are repeated that write.
+    at_end = ended | slot.over if reach > 1 else ended
+    m.d.comb += done.eq(slot.valid & slot.flush & at_end)
 
     # The slots of a frame are in its first line, or in one that has a line above, or the frame was given up.
     # The memory keeps the ends of lines, so lengths are compared without a counter.

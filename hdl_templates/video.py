@@ -4,14 +4,16 @@
 A stream carries one, two or four pixels a beat, the left one lowest, frames row by row: TUSER marks the first
 beat of a frame, TLAST the last of a line. A core classifies each pixel once, as it comes in. What looks at a
 3x3 window reads the answers, one bit each, of the two lines before from a block RAM, not the pixels; see
-`hdl_templates.scan`.
+`hdl_templates.scan`. Where the model looks at the pixels around a pixel, there are two such scans: the first
+one is of the few bits that are found of each pixel, and the windows of these have its class.
 
 Beyond the picture the nearest pixel inside is repeated, as in `wnn2hdl.ir.window.framed_window_codes`. A line
 has whole beats: where a picture is narrower, the sender repeats its last pixel, which is the same border.
 
 A frame is the lines up to the next TUSER, but no more than the input ``height`` says; all are as long as the
 first one. After the last of ``height`` lines, or where the next TUSER comes before, the core takes no pixels
-for as many cycles as a line has beats, and a few more, in which the last line of answers comes out.
+for as many cycles as a line has beats, and a few more, in which the last line of answers comes out; for as
+many lines as a neighbourhood reaches below its middle.
 
 A frame is given up where it turns out malformed: at a line that is shorter or longer than the first, a first
 line that is longer than the memory, or a TUSER inside a line. The answers that are complete by then stand;

@@ -14,9 +14,9 @@ from hdl_templates.hierarchy import Part, place
 from hdl_templates.lookup import draw_network, unread_inputs
 from hdl_templates.matcher import draw_match
 from hdl_templates.ports import named, tie_off
-from hdl_templates.video import VideoCore
+from hdl_templates.video import Neighbours, VideoCore
 from hdl_templates.winner import winner_network
-from wnn2hdl.ir import LutNetwork, Style, VideoFormat
+from wnn2hdl.ir import LutNetwork, Neighbourhood, Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
@@ -41,24 +41,32 @@ def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
     return CircuitComponent(circuit=circuit, style=style)
 
 
-def video_core(circuit: Circuit, video: VideoFormat, *, style: Style) -> VideoCore:
+def video_core(
+    circuit: Circuit, video: VideoFormat, neighbourhood: Neighbourhood | None, *, style: Style
+) -> VideoCore:
     """The hardware of a video core.
 
     Args:
         circuit: the circuits of the core, see `wnn2hdl.lower.deforestation.video`.
         video: its streams.
+        neighbourhood: what its model looks at around a pixel; None of a model of single pixels.
         style: how its LUT networks are written.
     """
-    pixels, windows = (
+    pixels, decisions, windows = (
         [
             component(node.circuit, style=style)
             for node in circuit.nodes
             if isinstance(node, Instance) and node.name == name
             for _ in range(video.pixels_per_clock)
         ]
-        for name in ("classifier", "window")
+        for name in ("classifier", "decision", "window")
     )
-    return VideoCore(video=video, pixels=pixels, windows=windows)
+    neighbours = None
+    if neighbourhood is not None:
+        places = zip(neighbourhood.sources, neighbourhood.taps, strict=True)
+        taps = [(source, tap.row, tap.column) for source, tap in places]
+        neighbours = Neighbours(neighbourhood.size, taps, decisions)
+    return VideoCore(video=video, pixels=pixels, windows=windows, neighbours=neighbours)
 
 
 def match_engine(circuit: Circuit, engine: EngineFormat, *, style: Style) -> MatchEngine:

@@ -130,7 +130,7 @@ def run(
 
     async def bench(ctx: Any) -> None:
         nonlocal took
-        if dut.windows:
+        if dut.has_lines:
             ctx.set(dut.height, height)
         left = [None, *beats][::-1]
         offered, held, idle, cycle = False, None, 0, 0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
-from wnn2hdl.ir import EdgeFilter, LutNetwork, PictureEncoder, Style, VideoFormat, WisardModel
+from wnn2hdl.ir import EdgeFilter, LutNetwork, Neighbourhood, PictureEncoder, Style, VideoFormat, WisardModel
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
@@ -25,6 +25,9 @@ from wnn2hdl.verify.specification import Specification
 from wnn2hdl.verify.specify import care_sets, specify
 
 Mode = Literal["exact", "domain"]
+
+CLASSIFIERS = ("pixel", "neighbourhood", "decision")
+"""The circuits of which one says what a pixel is; its care set is that of the classifier."""
 
 MODEL_FILE = "model.json"
 DESIGN_FILE = "design.json"
@@ -85,6 +88,12 @@ class Design:
         return self.circuit if self.stages is None else pipelined(self.circuit, self.stages)
 
     @property
+    def neighbourhood(self) -> Neighbourhood | None:
+        """What the model looks at around a pixel; None of all other models."""
+        encoder = self.model.encoder if isinstance(self.model, WisardModel) else None
+        return encoder if isinstance(encoder, Neighbourhood) else None
+
+    @property
     def latency(self) -> int:
         """Cycles from inputs to outputs; of a video core those of its circuits, one after the other.
 
@@ -127,7 +136,7 @@ class Design:
         if not self.target.classifies:
             return None
         sets = care_sets(self.circuit)
-        return sets.get("neighbourhood") or sets["pixel"]
+        return next(sets[name] for name in CLASSIFIERS if name in sets)
 
     def module(self, part: str) -> str:
         """The Verilog module of a circuit."""
@@ -275,7 +284,7 @@ class Design:
                 raise ValueError(f"{name} is not mapped to LUTs")
         if not self.target.fits(self.model):
             raise ValueError(f"the model cannot be the target {self.target.name}")
-        if self.target.classifies and not care_sets(self.circuit).keys() & {"neighbourhood", "pixel"}:
+        if self.target.classifies and care_sets(self.circuit).keys().isdisjoint(CLASSIFIERS):
             raise ValueError(f"the {self.target.name} holds no classifier")
         for name, care in care_sets(self.circuit).items():
             if self.mode == "exact" and care.kind not in ("everything", "implied"):

@@ -87,7 +87,7 @@ def top_part(design: Design) -> Part:
         return elaborate.match_engine(design.top, design.engine, style=design.style)
     if design.video is None:
         return elaborate.component(design.top, style=design.style)
-    return elaborate.video_core(design.top, design.video, style=design.style)
+    return elaborate.video_core(design.top, design.video, design.neighbourhood, style=design.style)
 
 
 def baseline_module(design: Design) -> str:

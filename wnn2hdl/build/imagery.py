@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from wnn2hdl.edges import canny, filter_agreement, grey, learned, learned_under_budget
 from wnn2hdl.edges.compare import Agreement
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.accuracy import with_halo
+from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.images import Picture, list_images, read_picture, whole_windows
-from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, Neighbourhood, WisardModel, picture_encoder, window_codes
+from wnn2hdl.ir import WINDOW_CODES, EdgeFilter, WisardModel, picture_encoder, window_codes
 from wnn2hdl.ir.window import SIDE, framed_window_codes
 from wnn2hdl.lower.table import code_histogram
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.raster import Reading
-from wnn2hdl.wisard import PixelClassifier
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,8 @@ class Survey:
 
     Attributes:
         codes: int64 ``[2**width]``, pixels or neighbourhoods of each code.
-        windows: int64 ``[512]``, 3x3 windows of the model's answers.
+        windows: int64 ``[512]``, 3x3 windows of the model's answers; of a model that looks at neighbours
+            where borders are counted.
         left_out: share of the pixels without data, or beside one where neighbours count, 0 to 1.
     """
 
@@ -54,7 +56,7 @@ class Survey:
 
 
 def survey(model: WisardModel, imagery: Imagery, progress: Progress, *, framed: bool = False) -> Survey:
-    """Count the codes of a model in imagery, and the binary windows that a model of pixels makes of it.
+    """Count the codes of a model in imagery, and the binary windows that it makes of it.
 
     Pixels and windows that are not all data are left out.
 
@@ -62,28 +64,29 @@ def survey(model: WisardModel, imagery: Imagery, progress: Progress, *, framed: 
         model: the model.
         imagery: the pictures.
         progress: called with each picture read.
-        framed: count also the windows at the border of a picture, see `framed_window_codes`.
+        framed: count also what lies at the border of a picture, beyond which its nearest pixel is repeated.
 
     Raises:
         InputError: the folder holds no pictures, one cannot be read, none holds data, or the model is too
             wide for a table.
     """
     encoder = picture_encoder(model)
-    classifier = None if isinstance(encoder, Neighbourhood) else PixelClassifier(model)
+    foreground = model.evaluate_all_codes() != 0
     codes = code_histogram(encoder, ())
     windows = np.zeros(WINDOW_CODES, dtype=np.int64)
     counted = pixels = 0
     for picture in imagery.pictures(progress):
-        whole = _inside(picture, encoder.halo)
-        found = encoder.codes(picture.pixels)[whole]
-        codes += np.bincount(found, minlength=len(codes))
-        counted, pixels = counted + found.size, pixels + whole.size
-        if classifier is not None and min(picture.valid.shape) >= SIDE:
-            binary, inside = classifier.classify(picture.pixels) != 0, _inside(picture, SIDE // 2)
-            if framed:
-                inside = whole_windows(np.pad(picture.valid, 1, mode="edge"), SIDE // 2)[1:-1, 1:-1]
-            seen = framed_window_codes(binary) if framed else window_codes(binary)
-            windows += np.bincount(seen[inside], minlength=WINDOW_CODES)
+        whole = whole_windows(picture.valid, encoder.halo) if framed else _inside(picture, encoder.halo)
+        found = encoder.codes(with_halo(picture.pixels, encoder.halo) if framed else picture.pixels)
+        codes += np.bincount(found[whole], minlength=len(codes))
+        counted, pixels = counted + int(whole.sum()), pixels + whole.size
+        if framed:
+            seen, inside = framed_window_codes(foreground[found]), whole_windows(whole, SIDE // 2)
+        elif encoder.halo or min(picture.valid.shape) < SIDE:
+            continue
+        else:
+            seen, inside = window_codes(foreground[found]), _inside(picture, SIDE // 2)
+        windows += np.bincount(seen[inside], minlength=WINDOW_CODES)
     if not counted:
         raise InputError("no pixel of the pictures is data", value=imagery.folder, hint="give others")
     return Survey(codes, windows, 1 - counted / pixels)
@@ -119,7 +122,7 @@ def _edge_pairs(
 
     Where there is no data both see the nearest data, so that its rim is not an edge.
     """
-    classifier = PixelClassifier(model)
+    classifier = model_classifier(model)
     for picture in imagery.pictures(progress):
         pixels = picture.pixels
         if picture.left_out:
@@ -128,7 +131,7 @@ def _edge_pairs(
 
             nearest = distance_transform_edt(~picture.valid, return_distances=False, return_indices=True)
             pixels = pixels[tuple(nearest)]
-        yield classifier.classify(pixels) != 0, canny(grey(pixels))
+        yield classifier.classify(with_halo(pixels, classifier.halo)) != 0, canny(grey(pixels))
 
 
 def _inside(picture: Picture, halo: int) -> NDArray[np.bool_]:

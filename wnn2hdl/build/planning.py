@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from wnn2hdl.build.capacity import require_capacity
-from wnn2hdl.build.design import Design, Mode
+from wnn2hdl.build.design import CLASSIFIERS, Design, Mode
 from wnn2hdl.build.emission import generators
 from wnn2hdl.build.imagery import Imagery, Survey, edge_agreement, learn_edges, survey
 from wnn2hdl.build.minimising import minimise_once
@@ -19,7 +19,6 @@ from wnn2hdl.ir import (
     WINDOW_CODES,
     EdgeFilter,
     LutNetwork,
-    Neighbourhood,
     PictureEncoder,
     Style,
     VideoFormat,
@@ -195,7 +194,7 @@ def plan(model: AnyModel, name: str, options: CompileOptions, progress: Progress
             if options.mode == "domain"
             else None
         )
-        care = _care_sets(model, options, seen) if seen is not None else None
+        care = _care_sets(options, seen) if seen is not None else None
     elif options.mode == "domain":
         raise InputError("domain mode is for models of pictures", value=model.kind, hint="leave --mode out")
     engine = _engine(options) if target.matches else None
@@ -310,15 +309,12 @@ def _stages(circuit: Circuit, target: Target, options: CompileOptions) -> Stages
     return None if options.stages is None else for_stages(circuit, options.stages)
 
 
-def _care_sets(model: WisardModel, options: CompileOptions, seen: Survey) -> dict[str, CareSet]:
+def _care_sets(options: CompileOptions, seen: Survey) -> dict[str, CareSet]:
     """The codes that occur in the care imagery, and the binary windows that the model makes of it."""
-    if isinstance(model.encoder, Neighbourhood):
-        return {"neighbourhood": Codes(care_set(seen.codes, options.care_minimum))}
+    codes = Codes(care_set(seen.codes, options.care_minimum))
     windows = seen.windows if seen.windows.any() else np.ones(WINDOW_CODES, dtype=np.int64)
-    return {
-        "pixel": Codes(care_set(seen.codes, options.care_minimum)),
-        "edge": Codes(care_set(windows, min(options.care_minimum, int(windows.max())))),
-    }
+    edge = Codes(care_set(windows, min(options.care_minimum, int(windows.max()))))
+    return {**dict.fromkeys(CLASSIFIERS, codes), "edge": edge}
 
 
 def _care_imagery(options: CompileOptions) -> Imagery:

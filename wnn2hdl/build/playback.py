@@ -11,17 +11,16 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from wnn2hdl.build.design import Design
+from wnn2hdl.build.design import CLASSIFIERS, Design
 from wnn2hdl.build.emission import Files
 from wnn2hdl.build.streaming import beats, framed_answers
 from wnn2hdl.build.verification import open_build
 from wnn2hdl.elaborate import component, video_core
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.images import read_rgb
-from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS, codes_to_bits
+from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS
 from wnn2hdl.ir.pixels import pixel_bits
 from wnn2hdl.ir.video import MAX_HEIGHT
-from wnn2hdl.ir.window import framed_window_codes
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
@@ -157,17 +156,14 @@ def _play_frame(
         raise InputError(
             "the core takes grey pixels", value="a picture in colours", hint="give a grey picture"
         )
-    pixels = {"rgb": pixel_bits(rgb.reshape(-1, len(CHANNELS)))}
-    cared = _check_cared(design, "pixel", pixels, design.parts["pixel"].evaluate(pixels))
-    classes, edges = framed_answers(design, rgb)
-    if edges is not None:
-        bits = {"bits": codes_to_bits(framed_window_codes(classes != 0).ravel(), WINDOW_BITS)}
-        _check_cared(design, "edge", bits, {"edge_bit": edges.reshape(-1, 1)})
+    framed = framed_answers(design, rgb)
+    shares = {part: _check_cared(design, part, *samples) for part, samples in framed.samples.items()}
+    cared = next(shares[part] for part in CLASSIFIERS if part in shares)
     frame = beats(design, [rgb])
     progress("simulating pixels", 0, len(frame))
     started = time.perf_counter()
     if simulator == "amaranth":
-        core = video_core(design.top, design.video, style=design.style)
+        core = video_core(design.top, design.video, design.neighbourhood, style=design.style)
         seconds = simulate_stream(
             core, frame, progress=partial(progress, "simulating pixels"), vcd=vcd
         ).seconds
@@ -177,7 +173,7 @@ def _play_frame(
         progress("simulating pixels", len(frame), len(frame))
     compile_seconds = time.perf_counter() - started - seconds if simulator != "amaranth" else 0.0
     sent = frame.answers.reshape(height, -1)[:, :width]
-    return Playback(height * width, cared, seconds, compile_seconds, classes != 0, edges, sent)
+    return Playback(height * width, cared, seconds, compile_seconds, framed.classes != 0, framed.edges, sent)
 
 
 def _check_cared(design: Design, part: str, inputs: Samples, answers: Samples) -> float:

@@ -81,7 +81,7 @@ def _simulate(design: Design, part: str) -> SimulationResult:
         return simulate_engine(match_engine(design.top, small, style=design.style), small.sample_rounds())
     if part not in design.parts:
         assert design.video is not None
-        core = video_core(design.top, design.video, style=design.style)
+        core = video_core(design.top, design.video, design.neighbourhood, style=design.style)
         return simulate_stream(core, sample_frames(design))
     claim = design.specification.claims[part]
     inputs = simulated_inputs(design, claim)

@@ -83,6 +83,20 @@ class Neighbourhood:
         """Name of each code bit."""
         return tuple(f"tap{position}" for position in range(len(self.taps)))
 
+    @cached_property
+    def tables(self) -> tuple[Tap, ...]:
+        """One tap for each different table: all that has to be found of a pixel, wherever it is seen."""
+        found: dict[tuple[BitSelect, int], Tap] = {}
+        for tap in self.taps:
+            found.setdefault((tap.pixel, tap.contents), tap)
+        return tuple(found.values())
+
+    @cached_property
+    def sources(self) -> tuple[int, ...]:
+        """For each tap which of `tables` it is."""
+        places = {(tap.pixel, tap.contents): place for place, tap in enumerate(self.tables)}
+        return tuple(places[tap.pixel, tap.contents] for tap in self.taps)
+
     @property
     def halo(self) -> int:
         """Pixels of the window beyond the classified one, on each side."""

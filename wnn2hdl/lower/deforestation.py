@@ -1,5 +1,7 @@
 """The circuits of the reference design: pixel, edge filter, matcher, block; and the neighbourhood."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from wnn2hdl.ir import (
@@ -10,6 +12,7 @@ from wnn2hdl.ir import (
     EdgeFilter,
     Neighbourhood,
     PixelEncoder,
+    Tap,
     TruthTable,
     WisardModel,
     pixel_encoder,
@@ -139,21 +142,21 @@ def block_match(block_circuit: Circuit, match_circuit: Circuit) -> Circuit:
     )
 
 
-def video(pixel_circuit: Circuit, edge_circuit: Circuit | None) -> Circuit:
-    """What a video core computes between its registers: a pixel's class, and the edge bit of a window.
+def video(circuits: Mapping[str, Circuit]) -> Circuit:
+    """What a video core computes between its registers.
 
-    The two have nothing in common here: memories that a circuit cannot have lie between them.
+    The circuits have nothing in common here: memories that a circuit cannot have lie between them.
 
     Args:
-        pixel_circuit: the pixel classifier.
-        edge_circuit: the edge filter; None in a core that sends no edges.
+        circuits: by the place that they have in the core, in the order in which a pixel passes them:
+            ``classifier``, of a pixel; ``decision``, of a neighbourhood, and ``window``, an edge filter, if
+            it has them.
     """
-    rgb, bits = Port("rgb", PIXEL_BITS), Port("bits", WINDOW_BITS)
-    nodes = [Instance("classifier", pixel_circuit, {"rgb": rgb.word})]
-    inputs = [rgb]
-    if edge_circuit is not None:
-        nodes.append(Instance("window", edge_circuit, {"bits": bits.word}))
-        inputs.append(bits)
+    inputs = [port for circuit in circuits.values() for port in circuit.inputs]
+    nodes = [
+        Instance(place, circuit, {port.name: port.word for port in circuit.inputs})
+        for place, circuit in circuits.items()
+    ]
     drivers = {port.name: _all(node) for node in nodes for port in node.circuit.outputs}
     summary = "The circuits of a video core."
     return Circuit("video", summary, tuple(inputs), tuple(nodes), drivers)
@@ -188,20 +191,49 @@ def neighbourhood(model: WisardModel, encoder: Neighbourhood, care: CareSet) -> 
         care: the codes of the encoder that matter.
     """
     window = Port("window", encoder.size**2 * PIXEL_BITS)
-    taps = []
-    for name, tap in zip(encoder.names, encoder.taps, strict=True):
-        low = PIXEL_BITS * (encoder.size * tap.row + tap.column)
-        word = tuple(Slice("window", low + position) for position in tap.pixel.pixel_positions)
-        taps.append(Table(name, word, TruthTable.exact(tap.pixel.names, (name,), tap.table[:, np.newaxis])))
-    code = tuple(Slice(tap.name) for tap in taps)
-    decision = Table(DECISION, code, _cared(pixel_table(model), care))
+    tables = [
+        _tap(name, tap, "window", PIXEL_BITS * (encoder.size * tap.row + tap.column))
+        for name, tap in zip(encoder.names, encoder.taps, strict=True)
+    ]
+    code = tuple(Slice(table.name) for table in tables)
+    table = Table(DECISION, code, _cared(pixel_table(model), care))
     return Circuit(
         "neighbourhood",
         f"Classifier of a pixel by the {encoder.size}x{encoder.size} pixels around it.",
         (window,),
-        (*taps, decision),
-        {"class_bits": _all(decision)},
+        (*tables, table),
+        {"class_bits": _all(table)},
         (Care(code, care),),
+    )
+
+
+def taps(encoder: Neighbourhood) -> Circuit:
+    """What a neighbourhood sees of each pixel: ``rgb`` to ``tap_bits``, a bit for each of its `tables`."""
+    names = (encoder.names[encoder.sources.index(place)] for place in range(len(encoder.tables)))
+    tables = [_tap(name, tap, "rgb", 0) for name, tap in zip(names, encoder.tables, strict=True)]
+    summary = f"What is seen of each of the {encoder.size}x{encoder.size} pixels around a pixel."
+    bits = tuple(Slice(table.name) for table in tables)
+    return Circuit("taps", summary, (Port("rgb", PIXEL_BITS),), tuple(tables), {"tap_bits": bits})
+
+
+def _tap(name: str, tap: Tap, net: str, low: int) -> Table:
+    """The table of a tap, of the pixel that lies in a net from bit ``low`` on."""
+    word = tuple(Slice(net, low + position) for position in tap.pixel.pixel_positions)
+    return Table(name, word, TruthTable.exact(tap.pixel.names, (name,), tap.table[:, np.newaxis]))
+
+
+def decision(model: WisardModel, care: CareSet) -> Circuit:
+    """The class by the code of a neighbourhood: ``code`` to ``class_bits``.
+
+    Args:
+        model: a model of neighbourhoods.
+        care: the codes of its encoder that matter.
+    """
+    code = Port("code", model.encoder.width)
+    table = Table(DECISION, code.word, _cared(pixel_table(model), care))
+    summary = f"Class of a pixel, of {len(model.classes)}, by what is seen of the pixels around it."
+    return Circuit(
+        "decision", summary, (code,), (table,), {"class_bits": _all(table)}, (Care(code.word, care),)
     )
 
 

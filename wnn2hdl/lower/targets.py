@@ -91,7 +91,13 @@ def _video(of: Ingredients) -> Circuit:
     model = _wisard(of)
     if len(model.classes) > MAX_CLASSES:
         raise InputError(f"a video core has at most {MAX_CLASSES} classes", value=len(model.classes))
-    return deforestation.video(_pixel(of), _edge(of) if of.video.has_edges else None)
+    encoder = model.encoder
+    if isinstance(encoder, Neighbourhood):
+        decision = deforestation.decision(model, of.cared("decision", encoder.width))
+        circuits = {"classifier": deforestation.taps(encoder), "decision": decision}
+    else:
+        circuits = {"classifier": _pixel(of)}
+    return deforestation.video(circuits | ({"window": _edge(of)} if of.video.has_edges else {}))
 
 
 def _engine(of: Ingredients) -> Circuit:
@@ -127,6 +133,10 @@ def _reads_pixels(model: AnyModel) -> bool:
 
 def _reads_neighbours(model: AnyModel) -> bool:
     return isinstance(model, WisardModel) and isinstance(model.encoder, Neighbourhood)
+
+
+def _reads_pictures(model: AnyModel) -> bool:
+    return _reads_pixels(model) or _reads_neighbours(model)
 
 
 def _is_network(model: AnyModel) -> bool:
@@ -167,9 +177,9 @@ TARGETS: Mapping[str, Target] = {
         ),
         Target(
             "video",
-            "A video core: pixel classifier, line buffers and edge filter between two AXI4-Streams",
+            "A video core: classifier, line buffers and edge filter between two AXI4-Streams",
             _video,
-            _reads_pixels,
+            _reads_pictures,
             has_edges=True,
             streams=True,
         ),

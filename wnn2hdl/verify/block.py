@@ -27,8 +27,9 @@ from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits, pixels_of_codes
 from wnn2hdl.ir.relational import occurring
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
+from wnn2hdl.verify.edge import EDGE_MASK, Edges, care_module, window_care
 from wnn2hdl.verify.reference import class_bits, lookup, module, plain_sum, winner
-from wnn2hdl.verify.specification import Claim, Mask, Samples, Specification, flags_of
+from wnn2hdl.verify.specification import Claim, Samples, Specification, flags_of
 
 WINDOW = WINDOW_BITS * PIXEL_BITS
 COUNT = WINDOW_BITS.bit_length()
@@ -59,7 +60,7 @@ class Block:
     def edge(self, inputs: Samples) -> dict[str, Bits]:
         """``edge_bit`` of ``bits``."""
         assert self.edges is not None
-        return {"edge_bit": self.edges.evaluate(bits_to_codes(inputs["bits"]))[:, np.newaxis]}
+        return Edges(self.edges, self.window_care).answers(inputs)
 
     def match(self, inputs: Samples) -> dict[str, Bits]:
         """``match_count`` of ``bits`` and ``reference_bits``."""
@@ -123,21 +124,19 @@ def block_specification(
         encoder,
         edges,
         flags_of(care.get("pixel", Everything(encoder.width)), encoder.width, "pixel"),
-        flags_of(care.get("edge", Everything(WINDOW_BITS)), WINDOW_BITS, "edge filter"),
+        window_care(care),
     )
     claims = [_pixel_claim(block), _match_claim(block)]
     reference = [_pixel(block), _match()]
     if edges is not None:
-        claims += [_edge_claim(block), _block_claim(block), _block_match_claim(block)]
-        reference += [_edge(edges), _block(block), _block_match()]
+        edge = Edges(edges, block.window_care)
+        claims += [edge.claim(), _block_claim(block), _block_match_claim(block)]
+        reference += [edge.reference(), _block(block), _block_match()]
     return Specification({claim.part: claim for claim in claims}, "\n".join(reference), _care(block))
 
 
 def _reference(part: str) -> str:
     return f"proof__{part}"
-
-
-_EDGE_MASK = {"edge_bit": Mask("proof__care_window", "bits")}
 
 
 def _pixel_claim(block: Block) -> Claim:
@@ -151,19 +150,6 @@ def _pixel_claim(block: Block) -> Claim:
         block.cared,
         block.hold,
         ("rgb",),
-    )
-
-
-def _edge_claim(block: Block) -> Claim:
-    return Claim(
-        "edge",
-        {"bits": WINDOW_BITS},
-        {"edge_bit": 1},
-        _reference("edge"),
-        block.edge,
-        lambda: stimulus.edge(block.window_care),
-        lambda inputs: block.edge_matters(inputs)[:, np.newaxis],
-        masks=_EDGE_MASK,
     )
 
 
@@ -183,7 +169,7 @@ def _block_claim(block: Block) -> Claim:
         block.cared,
         block.hold,
         ("window",),
-        _EDGE_MASK,
+        EDGE_MASK,
         {"edge_bit": block.edge_matters},
     )
 
@@ -203,7 +189,7 @@ def _block_match_claim(block: Block) -> Claim:
         block.cared,
         block.hold,
         ("window",),
-        _EDGE_MASK,
+        EDGE_MASK,
         {"edge_bit": block.edge_matters},
     )
 
@@ -219,11 +205,8 @@ def _care(block: Block) -> str:
     pixel_lines[:0] = code_lines
     red, green, blue = block.cared_pixel()
     pixel_lines.append(f"  assign rgb = {pixel_cared} ? free : {{8'd{red}, 8'd{green}, 8'd{blue}}};")
-    window_lines, window_cared = lookup("n", block.window_care, [f"bits[{i}]" for i in range(WINDOW_BITS)])
-    window_lines.append(f"  assign cared = {window_cared};")
-    return module("proof__care_pixel", {"free": PIXEL_BITS}, {"rgb": PIXEL_BITS}, pixel_lines) + module(
-        "proof__care_window", {"bits": WINDOW_BITS}, {"cared": 1}, window_lines
-    )
+    held = module("proof__care_pixel", {"free": PIXEL_BITS}, {"rgb": PIXEL_BITS}, pixel_lines)
+    return held + care_module(block.window_care)
 
 
 def _code(encoder: PixelEncoder, pixel: str) -> tuple[list[str], list[str]]:
@@ -256,12 +239,6 @@ def _pixel(block: Block) -> str:
     lines += [f"  wire [{len(code) - 1}:0] code = {{{', '.join(reversed(code))}}};", *winner(block.model)]
     claim = _pixel_claim(block)
     return module(claim.module, claim.inputs, claim.outputs, lines)
-
-
-def _edge(edges: EdgeFilter) -> str:
-    lines, answer = lookup("n", edges.patterns, [f"bits[{i}]" for i in range(WINDOW_BITS)])
-    lines.append(f"  assign edge_bit = {answer};")
-    return module(_reference("edge"), {"bits": WINDOW_BITS}, {"edge_bit": 1}, lines)
 
 
 def _match() -> str:

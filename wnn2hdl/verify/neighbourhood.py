@@ -1,20 +1,34 @@
-"""What the classifier of a pixel and its neighbours has to compute."""
+"""What the classifier of a pixel and its neighbours has to compute, as a whole and in two parts.
 
-from collections.abc import Mapping
+The parts are those between the registers of a video core: ``taps``, what is seen of each pixel, and
+``decision``, the class by what is seen of the pixels of a window.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import CHANNELS, PIXEL_BITS, Neighbourhood, WisardModel, codes_to_bits
+from wnn2hdl.ir import (
+    CHANNELS,
+    PIXEL_BITS,
+    EdgeFilter,
+    Neighbourhood,
+    Tap,
+    WisardModel,
+    bits_to_codes,
+    codes_to_bits,
+)
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.pixels import bits_to_pixels
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
+from wnn2hdl.verify.edge import Edges, care_module, window_care
 from wnn2hdl.verify.reference import class_bits, lookup, module, winner
 from wnn2hdl.verify.specification import Claim, Mask, Samples, Specification, flags_of
 
-PART = "neighbourhood"
+PART, TAPS, DECISION = "neighbourhood", "taps", "decision"
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +47,17 @@ class Neighbours:
 
     def answers(self, inputs: Samples) -> dict[str, Bits]:
         """``class_bits`` of ``window``."""
-        bits = codes_to_bits(self.codes(inputs["window"]), self.encoder.width)
-        return {"class_bits": codes_to_bits(self.model.evaluate(bits), class_bits(self.model))}
+        return self.classes({"code": codes_to_bits(self.codes(inputs["window"]), self.encoder.width)})
+
+    def classes(self, inputs: Samples) -> dict[str, Bits]:
+        """``class_bits`` of ``code``."""
+        return {"class_bits": codes_to_bits(self.model.evaluate(inputs["code"]), class_bits(self.model))}
+
+    def seen(self, inputs: Samples) -> dict[str, Bits]:
+        """``tap_bits`` of ``rgb``."""
+        pixels = bits_to_pixels(inputs["rgb"])[:, 0]
+        columns = [tap.table[tap.pixel.codes(pixels)] for tap in self.encoder.tables]
+        return {"tap_bits": np.stack(columns, axis=1)}
 
     def cared(self, inputs: Samples) -> NDArray[np.bool_]:
         """Which windows are cared for: bool ``[samples, 1]``."""
@@ -47,10 +70,19 @@ class Neighbours:
 
 
 def neighbourhood_specification(
-    model: WisardModel, encoder: Neighbourhood, care: Mapping[str, CareSet]
+    model: WisardModel, edges: EdgeFilter | None, encoder: Neighbourhood, care: Mapping[str, CareSet]
 ) -> Specification:
-    """The claim of a model of neighbourhoods; where the care set is missing, everything matters."""
-    flags = flags_of(care.get(PART, Everything(encoder.width)), encoder.width, PART)
+    """The claims of a model of neighbourhoods.
+
+    Args:
+        model: the model.
+        edges: the edge filter on its classes; without one there is no claim about it.
+        encoder: the model's.
+        care: the care sets of the circuits ``neighbourhood`` or ``decision``, whose codes are the same, and
+            ``edge``; where one is missing, everything matters.
+    """
+    allowed = care.get(PART) or care.get(DECISION) or Everything(encoder.width)
+    flags = flags_of(allowed, encoder.width, PART)
     neighbours = Neighbours(model, encoder, flags)
     claim = Claim(
         PART,
@@ -62,24 +94,66 @@ def neighbourhood_specification(
         neighbours.cared,
         masks={"class_bits": Mask("proof__care_neighbourhood", "window")},
     )
-    reference = module(claim.module, claim.inputs, claim.outputs, [*_window_code(encoder), *winner(model)])
-    return Specification({PART: claim}, reference, _care(claim, encoder, flags))
+    taps = Claim(
+        TAPS,
+        {"rgb": PIXEL_BITS},
+        {"tap_bits": len(encoder.tables)},
+        f"proof__{TAPS}",
+        neighbours.seen,
+        lambda: stimulus.taps(encoder),
+    )
+    decision = Claim(
+        DECISION,
+        {"code": encoder.width},
+        claim.outputs,
+        f"proof__{DECISION}",
+        neighbours.classes,
+        lambda: {"code": codes_to_bits(np.flatnonzero(flags), encoder.width)},
+        lambda inputs: flags[bits_to_codes(inputs["code"])][:, np.newaxis],
+        masks={"class_bits": Mask("proof__care_decision", "code")},
+    )
+    tap_lines, bits = _tap_bits(encoder.tables, "rgb", [0] * len(encoder.tables))
+    reference = [
+        module(claim.module, claim.inputs, claim.outputs, [*_window_code(encoder), *winner(model)]),
+        module(taps.module, taps.inputs, taps.outputs, [*tap_lines, f"  assign tap_bits = {bits};"]),
+        module(decision.module, decision.inputs, claim.outputs, winner(model)),
+    ]
+    cared = [
+        _care(PART, claim.inputs, _window_code(encoder), flags),
+        _care(DECISION, decision.inputs, [], flags),
+    ]
+    claims = [claim, taps, decision]
+    if edges is not None:
+        edge = Edges(edges, window_care(care))
+        claims.append(edge.claim())
+        reference.append(edge.reference())
+        cared.append(care_module(edge.care))
+    return Specification({part.part: part for part in claims}, "\n".join(reference), "\n".join(cared))
 
 
-def _care(claim: Claim, encoder: Neighbourhood, flags: NDArray[np.bool_]) -> str:
-    """``care_neighbourhood`` says whether a window is cared for."""
-    lines, cared = lookup("n", flags, [f"code[{i}]" for i in range(encoder.width)])
-    lines = [*_window_code(encoder), *lines, f"  assign cared = {cared};"]
-    return module("proof__care_neighbourhood", claim.inputs, {"cared": 1}, lines)
+def _care(part: str, inputs: Mapping[str, int], code: list[str], flags: NDArray[np.bool_]) -> str:
+    """The module that says whether a ``code``, which the lines make, is cared for."""
+    width = (len(flags) - 1).bit_length()
+    lines, cared = lookup("n", flags, [f"code[{i}]" for i in range(width)])
+    return module(f"proof__care_{part}", inputs, {"cared": 1}, [*code, *lines, f"  assign cared = {cared};"])
 
 
 def _window_code(encoder: Neighbourhood) -> list[str]:
     """Lines that make the wire ``code`` of a window: each tap's table at its pixel."""
+    lines, bits = _tap_bits(
+        encoder.taps,
+        "window",
+        [PIXEL_BITS * (encoder.size * tap.row + tap.column) for tap in encoder.taps],
+    )
+    return [*lines, f"  wire [{encoder.width - 1}:0] code = {bits};"]
+
+
+def _tap_bits(taps: Sequence[Tap], word: str, lows: Sequence[int]) -> tuple[list[str], str]:
+    """Lines, and the answers of taps side by side, whose pixels lie in a word from these bits on."""
     lines, bits = [], []
-    for i, tap in enumerate(encoder.taps):
-        low = PIXEL_BITS * (encoder.size * tap.row + tap.column)
-        address = [f"window[{low + position}]" for position in tap.pixel.pixel_positions]
+    for i, (tap, low) in enumerate(zip(taps, lows, strict=True)):
+        address = [f"{word}[{low + position}]" for position in tap.pixel.pixel_positions]
         tap_lines, bit = lookup(f"tap_{i}", tap.table, address)
         lines += tap_lines
         bits.append(bit)
-    return [*lines, f"  wire [{encoder.width - 1}:0] code = {{{', '.join(reversed(bits))}}};"]
+    return lines, f"{{{', '.join(reversed(bits))}}}"

@@ -46,7 +46,7 @@ def specify(
     if not isinstance(model, WisardModel):
         raise InputError("models of this kind are not proved yet", value=model.kind)
     if isinstance(model.encoder, Neighbourhood):
-        return neighbourhood_specification(model, model.encoder, care)
+        return neighbourhood_specification(model, edges, model.encoder, care)
     return block_specification(model, edges, care)
 
 

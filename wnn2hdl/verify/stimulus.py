@@ -123,6 +123,13 @@ def neighbourhood(encoder: Neighbourhood, care: NDArray[np.bool_]) -> dict[str, 
     return {"window": pixel_bits(windows)}
 
 
+def taps(encoder: Neighbourhood) -> dict[str, Bits]:
+    """A pixel of every code of every table of a neighbourhood."""
+    rng = np.random.default_rng(_SEED)
+    pixels = [pixels_of_codes(tap.pixel, np.arange(1 << tap.pixel.width), rng) for tap in encoder.tables]
+    return {"rgb": pixel_bits(np.concatenate(pixels))}
+
+
 def _pools(taps: list[Tap]) -> tuple[BitSelect, dict[int, NDArray[np.int64]]]:
     """The bits that the taps of one pixel read, and the codes that give each of their joint answers."""
     pixel = BitSelect(tuple(dict.fromkeys(name for tap in taps for name in tap.pixel.bits)))

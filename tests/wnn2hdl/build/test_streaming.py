@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.build.playback import play
 from wnn2hdl.build.streaming import framed_answers, sample_frames
@@ -13,9 +14,12 @@ from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.elaborate import video_core
 from wnn2hdl.emit import stream_testbench, stream_vectors
 from wnn2hdl.errors import CheckError, InputError, ToolError
+from wnn2hdl.evaluation.accuracy import with_halo
+from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.images import read_rgb, write_png
-from wnn2hdl.ir import VideoFormat, WisardModel, window_codes
+from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, VideoFormat, WisardModel, window_codes
 from wnn2hdl.ir.video import Beats
+from wnn2hdl.ir.window import framed_window_codes
 from wnn2hdl.tools import run_icarus
 from wnn2hdl.verify.stream import run_stream, simulate_stream
 from wnn2hdl.wisard import PixelClassifier
@@ -117,10 +121,10 @@ def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
     beats = sample_frames(design)
     wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
     with pytest.raises(CheckError, match="at beat 0"):
-        simulate_stream(video_core(design.top, design.video, style=design.style), wrong)
+        simulate_stream(video_core(design.top, design.video, None, style=design.style), wrong)
     endless = Beats(beats.pixels, beats.answers, beats.starts, beats.ends, beats.height + 1)
     with pytest.raises(CheckError, match="stops after"):
-        simulate_stream(video_core(design.top, design.video, style=design.style), endless)
+        simulate_stream(video_core(design.top, design.video, None, style=design.style), endless)
 
 
 def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
@@ -129,7 +133,7 @@ def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
     assert design.edges is None
     assert list(design.parts) == ["pixel"]
     pixels = np.random.default_rng(0).integers(0, 256, (3, 4, 3), dtype=np.uint8)
-    assert framed_answers(design, pixels)[1] is None
+    assert framed_answers(design, pixels).edges is None
 
 
 def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
@@ -160,9 +164,9 @@ def test_two_pixels_per_clock_with_registers_are_as_one(
     result = play(tmp_path / "fast", picture, "icarus", silent)
     assert result.frame is not None
     assert result.frame.shape == (5, 39)
-    classes, edges = framed_answers(open_build(tmp_path / "fast")[0], read_rgb(picture))
-    assert edges is not None
-    assert np.array_equal(result.frame, classes | edges.astype(np.uint8) << 7)
+    framed = framed_answers(open_build(tmp_path / "fast")[0], read_rgb(picture))
+    assert framed.edges is not None
+    assert np.array_equal(result.frame, framed.classes | framed.edges.astype(np.uint8) << 7)
 
 
 @pytest.mark.simulator
@@ -186,6 +190,61 @@ def test_grey_pixels_need_grey_imagery_for_a_care_set(model: WisardModel, tmp_pa
     design = plan(model, "mine", options, silent).design
     with pytest.raises(InputError, match="no grey pixel"):
         sample_frames(design)
+
+
+@pytest.fixture(scope="module")
+def neighbours() -> WisardModel:
+    """A model of 5x5 neighbourhoods that tell bright pixels from dark ones, in the middle and around it."""
+    draw = np.random.default_rng(3)
+    bits = BitSelect(("R7", "G7", "G6", "B7"))
+    places = [(2, 2), (2, 2), (0, 2), (4, 2), (2, 0), (2, 4)]
+    tables = [draw.permutation(np.arange(16) % 2 == 0) for _ in places[:-2]]
+    taps = [Tap.of(*place, bits, tables[i % 4]) for i, place in enumerate(places)]
+    counts = np.stack([value := draw.permutation(np.arange(64) % 2), 1 - value])[:, np.newaxis]
+    return WisardModel(
+        Neighbourhood(5, tuple(taps)),
+        ("forest", "deforested"),
+        np.arange(6)[np.newaxis, np.newaxis],
+        counts,
+        1,
+    )
+
+
+@pytest.mark.simulator
+@pytest.mark.parametrize(("per_clock", "stages", "mode"), [(1, None, "exact"), (2, 2, "domain")])
+def test_a_picture_through_a_core_of_neighbourhoods_is_classified_as_by_its_model(
+    neighbours: WisardModel, imagery: Path, tmp_path: Path, per_clock: int, stages: int | None, mode: Mode
+) -> None:
+    options = CompileOptions(
+        target="video",
+        max_width=64,
+        pixels_per_clock=per_clock,
+        stages=stages,
+        mode=mode,
+        care=imagery if mode == "domain" else None,
+    )
+    build = compile_model(neighbours, tmp_path / "near", options, silent)
+    assert build.failure is None
+    assert list(build.report["parts"]) == ["taps", "decision", "edge", "video", "sobel"]
+    assert [claim["part"] for claim in build.report["proof"]["claims"]][-3:] == ["taps", "decision", "edge"]
+    assert build.report["proof"]["status"] == "proved"
+    # A care set knows the whole picture with its borders, but not those of a crop.
+    rgb = read_rgb(imagery / "7.png")[: 37 if mode == "exact" else None, : 61 if mode == "exact" else None]
+    picture = tmp_path / "picture.png"
+    write_png(picture, rgb)
+    result = play(tmp_path / "near", picture, "icarus", silent)
+    classes = model_classifier(neighbours).classify(with_halo(rgb, 2))
+    assert np.array_equal(result.foreground, classes != 0)
+    assert 0.1 < result.foreground.mean() < 0.9
+    design = open_build(tmp_path / "near")[0]
+    assert design.edges is not None
+    assert result.edges is not None
+    edges = design.edges.evaluate(framed_window_codes(classes != 0))
+    assert np.array_equal(result.edges, edges)
+    assert result.cared == 1.0
+    if mode == "exact":
+        problems, _ = verify_build(tmp_path / "near", silent)
+        assert not problems
 
 
 def test_a_clock_beyond_that_of_the_core_is_refused(model: WisardModel) -> None:

@@ -115,3 +115,12 @@ def test_json_gives_the_encoder_back(encoder: Encoder) -> None:
 def test_bits_that_cannot_be_selected(bits: tuple[str, ...], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         BitSelect(bits)
+
+
+def test_taps_of_one_table_share_it_wherever_they_look() -> None:
+    table, other = np.arange(4) == 2, np.arange(4) > 0
+    bits = BitSelect(("R7", "G7"))
+    places = [(0, 1, table), (1, 1, other), (2, 1, table), (1, 1, table)]
+    encoder = Neighbourhood(3, tuple(Tap.of(row, column, bits, answers) for row, column, answers in places))
+    assert encoder.tables == encoder.taps[:2]
+    assert encoder.sources == (0, 1, 0, 0)
