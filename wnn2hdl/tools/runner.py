@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from wnn2hdl.errors import ToolError, ToolStoppedError
+from wnn2hdl.tools.watchdog import watched
 
 _FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that a program does not send itself; it aborts or faults by others."""
@@ -49,7 +50,8 @@ def run(
     """Run a program to its end.
 
     The program leads its own process group, which is killed as a whole when the time is up or when this
-    call is interrupted, so no grandchild (an ABC that Yosys started) stays behind.
+    call is interrupted, so no grandchild (an ABC that Yosys started) stays behind; nor does it when this
+    process itself is killed.
 
     Args:
         command: the binary, then its arguments; no shell is involved.
@@ -92,7 +94,8 @@ def run(
     try:
         if batch is not None:
             batch.add(process)
-        output, _ = process.communicate(stdin, timeout=timeout)
+        with watched(process.pid):
+            output, _ = process.communicate(stdin, timeout=timeout)
     except subprocess.TimeoutExpired:
         raise ToolStoppedError(
             f"{binary} did not finish in {timeout:g} s",

@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -106,6 +107,37 @@ def test_ctrl_c_kills_the_whole_process_group(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         run(command, timeout=30)
     assert ends_soon(int((tmp_path / "pid").read_text()))
+
+
+RUNS_IN_THREADS = """
+import os, pathlib, sys, time
+from wnn2hdl.tools import in_parallel, run
+
+run(["true"], timeout=10)
+if os.fork() == 0:
+    # A copy that outlives the original, as workers of a pool may.
+    pathlib.Path("copy").write_text(str(os.getpid()))
+    time.sleep(60)
+    os._exit(0)
+script = "sleep 60 & echo $! > $0; wait"
+list(in_parallel(lambda name: run(["sh", "-c", script, name], timeout=60), ["one", "two"], workers=2))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_what_runs_dies_with_a_process_that_is_killed(tmp_path: Path, number: signal.Signals) -> None:
+    def written(name: str) -> int:
+        while not (path := tmp_path / name).exists() or not path.read_text().strip():
+            assert parent.poll() is None
+            time.sleep(0.05)
+        return int(path.read_text())
+
+    with subprocess.Popen([sys.executable, "-c", RUNS_IN_THREADS], cwd=tmp_path) as parent:
+        copy, *started = map(written, ["copy", "one", "two"])
+        parent.send_signal(number)
+    assert all(map(ends_soon, started))
+    assert is_alive(copy)
+    os.kill(copy, signal.SIGKILL)
 
 
 def test_bytes_that_are_no_text_do_not_matter() -> None:
