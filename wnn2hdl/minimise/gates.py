@@ -6,12 +6,8 @@ are equal, so a recipe that restructures is asked only where the proof was measu
 """
 
 import tempfile
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from wnn2hdl.ir import LutNetwork
 from wnn2hdl.ir.models import LogicModel
@@ -19,6 +15,7 @@ from wnn2hdl.ir.packing import packed_luts
 from wnn2hdl.minimise.recipes import from_blif
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.tools import run_abc
+from wnn2hdl.tools.aiger import binary_aiger
 
 _SIX = "".join(f"{size} 1 1\n" for size in range(1, 7))
 # Six inputs fill a LUT6, where two tables of fewer can share one.
@@ -76,7 +73,8 @@ def map_gates(model: LogicModel, effort: int, progress: Progress) -> tuple[LutNe
     asked = [r for r in _RECIPES if r.effort <= effort and len(model.gates) <= r.most_gates]
     with tempfile.TemporaryDirectory(prefix="wnn2hdl-") as place:
         folder = Path(place)
-        (folder / "gates.aig").write_bytes(_aiger(model))
+        gates = binary_aiger(model.width, model.literals.tolist(), model.gates)
+        (folder / "gates.aig").write_bytes(gates)
         (folder / "six.lut").write_text(_SIX, encoding="ascii")
         (folder / "shared.lut").write_text(_SHARED, encoding="ascii")
         found = [
@@ -95,23 +93,3 @@ def _mapped(model: LogicModel, recipe: _Recipe, folder: Path) -> LutNetwork:
     draft = from_blif((folder / "luts.blif").read_text(encoding="ascii"), model.width)
     inputs = tuple(f"i{place}" for place in range(model.width))
     return draft.network(inputs, tuple(f"o{place}" for place in range(len(model.outputs))))
-
-
-def _aiger(model: LogicModel) -> bytes:
-    """The network in binary AIGER: each gate as two differences of literals, the larger literal first."""
-    gates, width = model.gates.astype(np.int64), model.width
-    high, low = gates.max(axis=1, initial=0), gates.min(axis=1, initial=1 << 40)
-    own = 2 * (1 + width + np.arange(len(gates), dtype=np.int64))
-    header = f"aig {width + len(gates)} {width} 0 {len(model.outputs)} {len(gates)}\n"
-    outputs = "".join(f"{literal}\n" for literal in model.literals.tolist())
-    deltas = np.stack([own - high, high - low], axis=1).reshape(-1)
-    return (header + outputs).encode("ascii") + b"".join(_seven_bits(deltas))
-
-
-def _seven_bits(numbers: NDArray[np.int64]) -> Iterator[bytes]:
-    """Numbers in bytes of seven bits, the lowest first; the high bit says that more follow."""
-    for number in numbers.tolist():
-        while number > 127:
-            yield bytes((number & 127 | 128,))
-            number >>= 7
-        yield bytes((number,))

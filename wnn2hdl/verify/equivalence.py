@@ -27,7 +27,7 @@ from typing import Any, Literal
 
 from wnn2hdl.errors import CheckError, ToolError
 from wnn2hdl.tools import find_yosys, run_abc
-from wnn2hdl.verify.aiger import Aiger
+from wnn2hdl.tools.aiger import Aiger
 
 _PRIMITIVE = re.compile(r"\b(LUT[1-6]|LUT6_2|MUXF[78]|CARRY4|INV|FD[RSCP]E|SRL16E|SRLC16E|SRLC32E|BUFG)\b")
 _VERDICT = re.compile(r"Networks are (equivalent|NOT EQUIVALENT|UNDECIDED)")

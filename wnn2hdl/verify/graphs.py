@@ -14,7 +14,7 @@ import numpy as np
 from wnn2hdl.errors import ToolError
 from wnn2hdl.ir.models import LogicModel
 from wnn2hdl.tools import run_abc
-from wnn2hdl.verify.aiger import Aiger
+from wnn2hdl.tools.aiger import Aiger
 from wnn2hdl.verify.equivalence import UNDECIDED
 from wnn2hdl.verify.signals import ONE, ZERO, Gate, Signals
 

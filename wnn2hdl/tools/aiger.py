@@ -1,9 +1,12 @@
 """And-inverter graphs in files of the binary AIGER format, and their unrolling over clock cycles."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
 
 from wnn2hdl.errors import ToolError
 
@@ -44,13 +47,7 @@ class Aiger:
 
     def write(self, path: Path) -> None:
         """Write a file of a graph without latches."""
-        top = self.inputs + len(self.ands)
-        parts = [f"aig {top} {self.inputs} 0 {len(self.outputs)} {len(self.ands)}\n".encode()]
-        parts += [f"{output}\n".encode() for output in self.outputs]
-        for gate, pair in enumerate(self.ands, start=self.inputs + 1):
-            low, high = sorted(pair)
-            parts += [_bytes(2 * gate - high), _bytes(high - low)]
-        path.write_bytes(b"".join(parts))
+        path.write_bytes(binary_aiger(self.inputs, self.outputs, np.array(self.ands)))
 
     def unrolled(self, cycles: int, first: tuple[int, ...]) -> "Aiger":
         """The outputs ``cycles`` clock edges later, as a graph without latches.
@@ -103,6 +100,23 @@ class Aiger:
         )
 
 
+def binary_aiger(inputs: int, outputs: Iterable[int], ands: NDArray[np.integer]) -> bytes:
+    """The content of a file: each gate is two differences of literals, the larger literal first.
+
+    Args:
+        inputs: as of `Aiger`.
+        outputs: as of `Aiger`.
+        ands: ``[gates, 2]``, the two literals of each gate, which are below its own; any shape for no gate.
+    """
+    pairs = np.sort(ands.astype(np.int64).reshape(-1, 2), axis=1)
+    literals = list(outputs)
+    header = f"aig {inputs + len(pairs)} {inputs} 0 {len(literals)} {len(pairs)}\n"
+    own = 2 * (1 + inputs + np.arange(len(pairs), dtype=np.int64))
+    differences = np.stack([own - pairs[:, 1], pairs[:, 1] - pairs[:, 0]], axis=1)
+    lines = "".join(f"{literal}\n" for literal in literals)
+    return (header + lines).encode("ascii") + b"".join(map(_bytes, differences.reshape(-1).tolist()))
+
+
 def _numbers(content: bytes) -> Iterator[int]:
     """Numbers in bytes of seven bits, the least significant first; the high bit says that more follow."""
     value = shift = 0
@@ -114,9 +128,10 @@ def _numbers(content: bytes) -> Iterator[int]:
             value = shift = 0
 
 
-def _bytes(value: int) -> bytes:
+def _bytes(number: int) -> bytes:
+    """A number as `_numbers` reads it."""
     found = bytearray()
-    while value > 127:
-        found.append(value & 127 | 128)
-        value >>= 7
-    return bytes([*found, value])
+    while number > 127:
+        found.append(number & 127 | 128)
+        number >>= 7
+    return bytes([*found, number])

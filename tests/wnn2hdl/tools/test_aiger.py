@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wnn2hdl.errors import ToolError
-from wnn2hdl.verify.aiger import Aiger
+from wnn2hdl.tools.aiger import Aiger
 
 
 def evaluate(graph: Aiger, inputs: list[bool]) -> list[bool]:
