@@ -185,7 +185,7 @@ def _word(option: str, value: Any) -> str:
     if option in ("template", "segment"):
         return "x".join(map(str, value))
     if isinstance(value, tuple):
-        return (":" if option == "scale" else ",").join(map(str, value))
+        return (".." if option == "scale" else ",").join(map(str, value))
     return str(value)
 
 

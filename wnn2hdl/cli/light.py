@@ -27,12 +27,12 @@ HAZE_ALONE = "0..0.1"
 
 exposure_option = click.option(
     "--exposure",
-    type=SpanType(0.1, 10),
+    type=SpanType("0.8..1.5", 0.1, 10),
     help="Also measure in this range of the light, as in 0.8..1.5.",
 )
 haze_option = click.option(
     "--haze",
-    type=SpanType(0, 1),
+    type=SpanType(HAZE_ALONE, 0, 1),
     is_flag=False,
     flag_value=HAZE_ALONE,
     help=f"Also measure through white haze.  [default: {HAZE_ALONE}]",

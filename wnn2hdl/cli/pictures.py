@@ -7,6 +7,7 @@ from typing import Any, get_args
 
 import click
 
+from wnn2hdl.cli.finite import SpanType
 from wnn2hdl.images import MaskFormat, Palette, parse_code, spoken_codes
 from wnn2hdl.raster import AlphaMeaning, Reading
 
@@ -17,6 +18,8 @@ READING = ("--bands", "--scale", "--alpha")
 
 MASKS = ("--palette", "--ignore")
 """How masks are read, for the same."""
+
+SCALE_EXAMPLE = "0..3000"
 
 
 class BandsType(click.ParamType[tuple[int, ...]]):
@@ -38,30 +41,6 @@ class BandsType(click.ParamType[tuple[int, ...]]):
     def spoken(self, value: tuple[int, ...]) -> str:
         """The value as users write it."""
         return ",".join(map(str, value))
-
-
-class ScaleType(click.ParamType[tuple[float, float]]):
-    """``0:3000``: the values that become 0 and 255."""
-
-    name = "LOW:HIGH"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
-        """The two numbers."""
-        if isinstance(value, tuple):
-            return value
-        try:
-            low, high = map(float, str(value).split(":"))
-        except ValueError:
-            self.fail(f"{value!r} is not a pair of numbers, as in 0:3000", param, ctx)
-        if not -float("inf") < low < high < float("inf"):
-            self.fail(f"{value!r} does not rise from one number to another", param, ctx)
-        return low, high
-
-    def spoken(self, value: tuple[float, float]) -> str:
-        """The value as users write it."""
-        return ":".join(map(repr, value))
 
 
 class CodesType(click.ParamType[tuple[int, ...]]):
@@ -90,7 +69,7 @@ class CodesType(click.ParamType[tuple[int, ...]]):
 bands_option = click.option("--bands", type=BandsType(), help="Choose the bands of red, green and blue.")
 scale_option = click.option(
     "--scale",
-    type=ScaleType(),
+    type=SpanType(SCALE_EXAMPLE),
     help="Map these values to 0 and 255, beyond 8 bits.",
 )
 alpha_option = click.option(

@@ -14,7 +14,7 @@ from wnn2hdl.apps.deforestation.distributed import run_distributed
 from wnn2hdl.apps.deforestation.local import run_locally
 from wnn2hdl.apps.deforestation.options import ScanOptions, Vector
 from wnn2hdl.apps.deforestation.scanning import Scanner
-from wnn2hdl.cli.finite import FiniteRange
+from wnn2hdl.cli.finite import FiniteRange, SpanType
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
     file,
@@ -26,7 +26,7 @@ from wnn2hdl.cli.options import (
     square_option,
 )
 from wnn2hdl.cli.output import emit, json_option, progress
-from wnn2hdl.cli.pictures import READING, BandsType, ScaleType, reading_options
+from wnn2hdl.cli.pictures import READING, SCALE_EXAMPLE, BandsType, reading_options
 from wnn2hdl.cli.terminal import say
 from wnn2hdl.errors import InputError
 from wnn2hdl.raster import Reading
@@ -67,7 +67,9 @@ SECTIONS = {
 @click.option("--exclude", type=file, help="Leave out pixels that are not 0 in this raster.")
 @click.option("--before", type=file, help="Map what was cleared since this picture.")
 @click.option("--before-bands", type=BandsType(), help="Choose its bands.  [default: --bands]")
-@click.option("--before-scale", type=ScaleType(), help="Map its values to 0 and 255.  [default: --scale]")
+@click.option(
+    "--before-scale", type=SpanType(SCALE_EXAMPLE), help="Map its values to 0 and 255.  [default: --scale]"
+)
 @click.option("--before-exclude", type=file, help="Leave out its pixels that are not 0 in this raster.")
 @click.option(
     "--vector",
@@ -108,7 +110,7 @@ def scan_command(
 
     \b
     Examples:
-      wnn2hdl scan build/mine sentinel.tif --bands 3,2,1 --scale 0:3000 --exclude clouds.tif -o build/map
+      wnn2hdl scan build/mine sentinel.tif --bands 3,2,1 --scale 0..3000 --exclude clouds.tif -o build/map
       wnn2hdl scan model.json 2024.tif --before 2023.tif --min-area 1 --vector gpkg -o build/change
     """
     if min_area is not None and min_pixels is not None:

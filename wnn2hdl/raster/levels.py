@@ -109,7 +109,7 @@ def _require_reach(
     if scale[0] >= max(reached) or scale[1] > 2 * max(map(abs, reached)):
         raise InputError(
             f"the file's values reach from {min(reached):g} to {max(reached):g}, so none becomes white",
-            value=f"--scale {scale[0]:g}:{scale[1]:g} for {path} ({_spoken(units)})",
+            value=f"--scale {scale[0]:g}..{scale[1]:g} for {path} ({_spoken(units)})",
             hint="give --scale in the file's units",
         )
 
@@ -129,7 +129,7 @@ def _unscaled(
     return InputError(
         f"the samples are {'/'.join(sorted(kinds))}, and it is not said how they become 0 to 255",
         value=f"{path} ({span}{unit})",
-        hint="give --scale LOW:HIGH, as in --scale 0:3000",
+        hint="give --scale LOW..HIGH, as in --scale 0..3000",
     )
 
 

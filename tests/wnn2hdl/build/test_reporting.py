@@ -85,7 +85,7 @@ def test_the_commands_read_pictures_in_the_same_way(tmp_path: Path) -> None:
         scale=(0, 0.3),
         alpha="data",
     )
-    said = "--ignore 255,-1 --bands 3,2,1 --scale 0:0.3 --alpha data"
+    said = "--ignore 255,-1 --bands 3,2,1 --scale 0..0.3 --alpha data"
     assert command("x", options).endswith(said)
     assert evaluation("x", options).endswith(said)
 

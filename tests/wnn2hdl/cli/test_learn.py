@@ -158,11 +158,11 @@ def test_pixels_left_out_are_reported_and_the_command_can_be_repeated(
         1,
     ]
     assert "holds 1, 7 besides 0" in run(*words, "-o", tmp_path / "m.json").stderr
-    done = run(*words, "--ignore", "7,#ff00ff", "--scale", "0:255", "-o", tmp_path / "m.json")
+    done = run(*words, "--ignore", "7,#ff00ff", "--scale", "0..255", "-o", tmp_path / "m.json")
     assert "37.50% of the pixels left out: not labelled, or no data" in done.stdout
     training = json.loads((tmp_path / "m.json").read_text())["training"]
     assert training["left_out"] == {"pixels": 24, "share": 0.375}
-    assert "--ignore '7,#ff00ff' --scale 0.0:255.0 --bits R7,G7" in training["command"]
+    assert "--ignore '7,#ff00ff' --scale 0.0..255.0 --bits R7,G7" in training["command"]
     again = run("evaluate", tmp_path / "m.json", *words[1:5], "--ignore", 7)
     assert "37.50% of the pixels left out" in again.stdout
 

@@ -92,7 +92,7 @@ def test_a_sentinel_product_needs_bands_and_a_scale(scan: Run, model: Path, tmp_
     start = (model, tmp_path / "s2.tif", "-o", tmp_path / "out")
     assert "give --bands" in scan(*start).complaint()
     assert "give --scale" in scan(*start, "--bands", "3,2,1").complaint()
-    done = scan(*start, "--bands", "3,2,1", "--scale", "0:3000", "--json")
+    done = scan(*start, "--bands", "3,2,1", "--scale", "0..3000", "--json")
     scaled = np.clip(np.rint(bands[2] * (255 / 3000)), 0, 255)
     assert json.loads(done.stdout)["deforested"]["pixels"] == (scaled >= 96).sum()
 
@@ -100,11 +100,11 @@ def test_a_sentinel_product_needs_bands_and_a_scale(scan: Run, model: Path, tmp_
 def test_bad_usage_is_one_line(scan: Run, model: Path, picture: Path, tmp_path: Path) -> None:
     start = (model, picture, "-o", tmp_path / "out")
     assert "'3,2' is neither three band numbers" in scan(*start, "--bands", "3,2").complaint()
-    assert "'9:1' does not rise" in scan(*start, "--scale", "9:1").complaint()
+    assert "'9..1' does not rise" in scan(*start, "--scale", "9..1").complaint()
     assert "nan is not a finite number" in scan(*start, "--share", "nan").complaint()
     assert "inf is not a finite number" in scan(*start, "--min-area", "inf").complaint()
     assert "is not in the range" in scan(*start, "--square", 1_000_000).complaint()
-    assert "'low' is not a pair" in scan(*start, "--scale", "low").complaint()
+    assert "'low' is not a range" in scan(*start, "--scale", "low").complaint()
     assert "limit the same regions" in scan(*start, "--min-area", 1, "--min-pixels", 9).complaint()
     assert "--jobs is for this machine" in scan(*start, "--jobs", 1, "--scheduler", "tcp://a:1").complaint()
     assert "does not exist" in scan(model, tmp_path / "none.tif", "-o", tmp_path / "out").complaint()

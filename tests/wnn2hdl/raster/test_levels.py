@@ -56,7 +56,7 @@ def test_each_band_has_units_of_its_own(save: Any) -> None:
 
 def test_a_scale_of_samples_does_not_fit_a_file_of_reflectances(save: Any) -> None:
     path = with_units(save(np.ones((3, 4, 5), np.uint16), photometric="rgb"), 1e-4, -0.1)
-    with pytest.raises(InputError, match=r"reach from -0\.1 to 6\.4535.*--scale 0:3000"):
+    with pytest.raises(InputError, match=r"reach from -0\.1 to 6\.4535.*--scale 0\.\.3000"):
         RasterReader(path, Reading(scale=(0, 3000)))
 
 

@@ -195,7 +195,7 @@ class Scanner:
                 Calibration.read(before, then.bands),
                 picture,
                 Calibration.read(picture, now.bands),
-                "give --scale LOW:HIGH and --before-scale LOW:HIGH, each in the units of its own file",
+                "give --scale LOW..HIGH and --before-scale LOW..HIGH, each in the units of its own file",
             )
         earlier = open_picture(before, then)
         sizes = [(x.height, x.width) for x in (earlier, after)]
