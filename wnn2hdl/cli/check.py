@@ -113,6 +113,7 @@ def simulate_command(
     places = "windows" if pictures.keys() == {"class"} else "pixels"
     runs = "windows" if result.frame is None else "pixels"
     rate = result.windows / result.seconds
+    known = f"; {result.cared:.2%} of the {places} have a code that the circuit is proved on"
     data = {
         "image": str(image),
         "simulator": simulator,
@@ -126,8 +127,7 @@ def simulate_command(
     }
     text = (
         f"{image}: {result.windows:,} {runs} in {result.seconds:.1f} s ({rate:,.0f} per second), all bits "
-        f"as the model says; {result.cared:.2%} of the {places} have a code that the circuit is proved on\n"
-        f"pictures in {output}"
+        f"as the model says{known if result.cared < 1 else ''}\npictures in {output}"
     )
     emit(data, text, as_json=as_json)
 
@@ -234,9 +234,10 @@ def _placed(build: Path, device: str, done: PlacedBuild) -> str:
     figures = done.figures
     cells = figures["cells"]
     fmax = "no clock" if figures["fmax_mhz"] is None else f"{figures['fmax_mhz']:.1f} MHz"
+    rams = "1 block RAM" if cells["rams"] == 1 else f"{cells['rams']} block RAMs"
     return (
         f"{figures['circuit']} on {device}: {cells['luts']} LUTs of four inputs, {cells['ffs']} flip-flops, "
-        f"{cells['rams']} block RAMs; {fmax} after routing, {figures['proof']} before it\n"
+        f"{rams}; {fmax} after routing; netlist before placement: {figures['proof']}\n"
         f"{HARNESSES[figures['harness']]}; pins {figures['pins']}, seed {figures['seed']}\n"
         f"bitstream {done.files[-1]}; figures added to {build / REPORT_PAGE}"
     )

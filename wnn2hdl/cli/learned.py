@@ -1,16 +1,20 @@
 """What `train` says of a model of pictures, and the front of models that it writes."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from rich.table import Table
 
+from wnn2hdl.cli.output import printed
 from wnn2hdl.evaluation.light import brighter_figures, brighter_warning
 from wnn2hdl.ir import WisardModel, picture_encoder
-from wnn2hdl.training.budget import LIGHT, NESTED, Point, pareto_front
+from wnn2hdl.ir.pixel_bits import PIXEL_BIT_NAMES
+from wnn2hdl.training.budget import LIGHT, NESTED, WITHIN, Point, pareto_front
 from wnn2hdl.training.discriminators import LEFT_OUT
 from wnn2hdl.training.promise import OTHERS
 
@@ -47,24 +51,30 @@ def _shares(model: WisardModel) -> dict[float, float]:
 def train_sentence(summary: dict[str, Any]) -> str:
     """What `train_summary` found, for people."""
     saturation = summary["saturation"]
+    rams = "1 RAM" if summary["rams"] == 1 else f"{summary['rams']} RAMs"
     lines = [
-        f"{summary['model']}: {' / '.join(summary['classes'])}, {summary['rams']} RAMs of "
-        f"{summary['address_bits']} address bits over {','.join(summary['bits'])}",
+        f"{summary['model']}: {' / '.join(summary['classes'])}, {rams} of "
+        f"{summary['address_bits']} address bits for each class, reading {','.join(summary['bits'])}",
         f"bleaching threshold {summary['bleaching']}, trained on {summary['images']} images; "
-        f"RAMs {saturation['mean']:.0%} set, {saturation['highest']:.0%} at most",
+        f"{saturation['mean']:.0%} of all RAM cells are set, {saturation['highest']:.0%} in the fullest RAM",
     ]
-    lines += [
-        f"light x{exposure}: {figures['accuracy']:.2%} of the pixels of unseen images, "
-        f"{figures['worst_image']:.2%} of the worst one's; expect {figures['other_images'][0]:.2%} "
-        f"to {figures['other_images'][1]:.2%} of {OTHERS} others"
-        for exposure, figures in summary["training"].get(LIGHT, {}).items()
-    ]
+    if LIGHT in summary["training"]:
+        lines += [
+            "right pixels of images that were not trained on:",
+            _light_table(summary["training"][LIGHT]),
+        ]
     if NESTED in summary["training"]:
         methods = summary["training"][NESTED]
         times = (f"{method} ({count} of {len(methods)})" for method, count in Counter(methods).items())
         lines.append(f"chosen inside the folds: {'; '.join(times)}")
     warning = brighter_warning(summary["brighter"])
-    lines += [warning] if warning else []
+    if warning:
+        lines.append(warning)
+        if all(name in PIXEL_BIT_NAMES for name in summary["bits"]):
+            lines.append(
+                "comparisons of channels hold in changed light, and take more LUTs: train with "
+                f"--luts-per-pixel {max(WITHIN)}"
+            )
     left_out = summary["training"][LEFT_OUT]
     if left_out["pixels"]:
         lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")
@@ -74,6 +84,15 @@ def train_sentence(summary: dict[str, Any]) -> str:
         for point in summary.get("front", ())
     ]
     return "\n".join(lines)
+
+
+def _light_table(light: Mapping[str, Mapping[str, Any]]) -> str:
+    table = Table("light", "all images", "worst image", f"expected on {OTHERS} other images")
+    for exposure, figures in light.items():
+        low, high = figures["other_images"]
+        shares = f"{figures['accuracy']:.2%}", f"{figures['worst_image']:.2%}"
+        table.add_row(f"x{exposure}", *shares, f"{low:.2%} to {high:.2%}")
+    return printed(table)
 
 
 def save_front(

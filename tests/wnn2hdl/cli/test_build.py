@@ -26,6 +26,7 @@ def test_what_it_costs_is_a_table_or_one_json_object(run: Run, file: Path, tmp_p
     assert json.loads(done.stdout) == json.loads((folder / "report.json").read_text())
     lines = run("compile", file, "--target", "pixel", "-o", folder).stdout.splitlines()
     assert lines[0].strip() == "build: pixel, exact mode"
+    assert [line.split("│")[1].strip() for line in lines if line.startswith("│")] == ["pixel"]
     assert any(line.startswith("proof: proved in ") for line in lines)
     assert lines[-1] == f"written to {folder}"
 

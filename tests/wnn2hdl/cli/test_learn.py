@@ -103,9 +103,17 @@ def test_a_choice_says_what_to_expect_of_other_images(run: Run, tmp_path: Path) 
     low, high = figures["other_images"]
     assert 0 <= low < figures["accuracy"] < high <= 1
     text = run(*words).stdout
-    assert f"light x1: {figures['accuracy']:.2%} of the pixels of unseen images" in text
-    assert f"expect {low:.2%} to {high:.2%} of 10 others" in text
+    row = next(line for line in text.splitlines() if line.startswith("│ x1 "))
+    shares = f"{figures['accuracy']:.2%}", f"{figures['worst_image']:.2%}", f"{low:.2%} to {high:.2%}"
+    assert [cell.strip() for cell in row.strip("│").split("│")] == ["x1", *shares]
     assert "chosen inside the folds: bit selection, 1 LUT (3 of 3)" in text
+
+
+def test_a_classifier_that_brighter_light_misleads_comes_with_advice(run: Run, tmp_path: Path) -> None:
+    levels = ("train", "--bits", "R5,R4", "--address-bits", 2, "--rams", 1, "-o", tmp_path / "m.json")
+    warning, advice = run(*levels).stdout.splitlines()[-2:]
+    assert warning.startswith("brighter ground of the same kind may be answered differently: R7, R6 are not")
+    assert advice.endswith("train with --luts-per-pixel 7")
 
 
 def test_only_a_choice_can_be_nested(run: Run, folders: tuple[Path, Path], tmp_path: Path) -> None:
