@@ -19,8 +19,9 @@ pictures: demo
 	$(BIN)/python docs/pictures.py build/demo docs/pictures
 
 # A process for each core, but each needs up to a gigabyte. The tests of a file share what they build.
+# Which lines they run is measured, and `.venv/bin/coverage report` lists them; pyproject.toml has the floor.
 test: $(STAMP)
-	$(BIN)/pytest --numprocesses logical --maxprocesses 4 --dist loadfile
+	$(BIN)/pytest --numprocesses logical --maxprocesses 4 --dist loadfile --cov --cov-report=
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

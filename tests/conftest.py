@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import is_hypothesis_test
 
 REAL_DATA = Path(__file__).parents[2] / "shared" / "data"
 
@@ -14,6 +15,14 @@ REAL_DATA = Path(__file__).parents[2] / "shared" / "data"
 def pytest_sessionstart() -> None:
     """Let Ctrl-C reach the tests of it: what a shell starts in the background ignores it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Measure coverage in quick tests of single examples alone: elsewhere it costs half as much again."""
+    if config.pluginmanager.hasplugin("_cov"):
+        for item in items:
+            if item.get_closest_marker("slow") or is_hypothesis_test(getattr(item, "obj", None)):
+                item.add_marker(pytest.mark.no_cover)
 
 
 @pytest.fixture(scope="session")
