@@ -11,13 +11,12 @@ from typing import Any
 from wnn2hdl.api.models import Model
 from wnn2hdl.api.progress import watched
 from wnn2hdl.api.showing import Shown
-from wnn2hdl.build.compile import compile_model
+from wnn2hdl.build.compile import compile_model, require_equal
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.folder import require_build
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.build.reporting import read_report
 from wnn2hdl.build.verification import verify_build
-from wnn2hdl.errors import CheckError
 from wnn2hdl.ir.models import AnyModel, load_model
 from wnn2hdl.progress import Progress
 
@@ -138,8 +137,7 @@ def compile(  # noqa: A001  # as the command is called
     try:
         with watched(progress) as report:
             made = compile_model(network(model), place, options, report)
-        if made.failure is not None:
-            raise CheckError("the circuit is not the model", value=made.failure, hint=f"see {made.folder}")
+        require_equal(made)
     except BaseException:
         if folder is None:
             shutil.rmtree(place.parent, ignore_errors=True)

@@ -1,18 +1,18 @@
 """Where a flight's frames were taken."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from wnn2hdl.api.progress import watched
 from wnn2hdl.api.showing import Shown
 from wnn2hdl.apps.navigation.camera import Camera
-from wnn2hdl.apps.navigation.conventions import require_aircraft_angles
+from wnn2hdl.apps.navigation.conventions import read_flight_poses
 from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
 from wnn2hdl.apps.navigation.learned import Learned
 from wnn2hdl.apps.navigation.methods import METHODS, engine_of
-from wnn2hdl.apps.navigation.poses import frame_files, read_poses
-from wnn2hdl.apps.navigation.recording import Recording, split
+from wnn2hdl.apps.navigation.poses import Pose, frame_files
+from wnn2hdl.apps.navigation.recording import Recording, split, unseen
 from wnn2hdl.apps.navigation.results import MethodResult, SearchKind
 from wnn2hdl.apps.navigation.summary import write_run
 from wnn2hdl.errors import InputError
@@ -79,15 +79,14 @@ def recording(
         InputError: a file is missing or cannot be used, or the log follows another convention.
         ExtraMissingError: the extra ``geo`` is not installed.
     """
-    logged = read_poses(Path(poses))
-    require_aircraft_angles(logged)
+    logged = read_flight_poses(Path(poses))
     return Recording.of_files(Path(map_file), frame_files(logged, Path(frames)), camera, reading)
 
 
 def locate(
     flight: Recording | None = None,
     *,
-    calibrate: int | Learned | Path | str = 0,
+    calibrate: int | Sequence[Pose] | Learned | Path | str = 0,
     methods: Collection[str] = METHODS,
     engine: tuple[Shape, Shape] | None = None,
     window_m: float | None = 95.0,
@@ -102,8 +101,8 @@ def locate(
 
     Args:
         flight: of `recording`, or made of arrays; a generated flight if left out.
-        calibrate: so many frames are fitted on and not scored; or what an earlier run learned, or its
-            ``calibration.json``; 0 takes everything as it is given.
+        calibrate: so many frames, or those of these poses, are fitted on and not scored; or what an earlier
+            run learned, or its ``calibration.json``; 0 takes everything as it is given.
         methods: keys of those that are compared.
         engine: rows and columns of template and segment of the match engine that methods answer as.
         window_m: half the side of a window around the logged position that is searched; None for no window.
@@ -129,17 +128,17 @@ def locate(
     answering = engine_of(template, segment, methods)
     with watched(progress) as report:
         flown = flight or Recording.embedded(seed)
+        if isinstance(calibrate, Path | str):
+            calibrate = Learned.read(Path(calibrate))
+        learned: Learned | Sequence[Pose]
         if isinstance(calibrate, int):
-            calibrating, scored = split(flown.poses, calibrate) if calibrate else ((), flown.poses)
-            known: Learned | None = None
+            learned, scored = split(flown.poses, calibrate) if calibrate else ((), flown.poses)
         else:
-            known = calibrate if isinstance(calibrate, Learned) else Learned.read(Path(calibrate))
-            calibrating, scored = (), tuple(pose for pose in flown.poses if pose not in known.poses)
-        if not scored:
-            raise InputError("all frames were used to calibrate", hint="locate other frames")
+            used = calibrate.poses if isinstance(calibrate, Learned) else calibrate
+            learned, scored = calibrate, unseen(flown.poses, used)
         run = run_flight(
             flown.scoring(scored),
-            known or calibrating,
+            learned,
             searches,
             report,
             keys=methods,

@@ -14,6 +14,7 @@ from wnn2hdl.api.showing import Shown
 from wnn2hdl.build.classifier import circuit_row_answers, open_classifier, open_working_build
 from wnn2hdl.build.design import require_picture_model
 from wnn2hdl.dataset import Dataset
+from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.evaluation.accuracy import evaluate as compare
 from wnn2hdl.evaluation.classifiers import PixelTable, model_classifier
 from wnn2hdl.evaluation.measures import (
@@ -104,8 +105,8 @@ def evaluate(
 
 def evaluate_table(
     subject: Model | Build,
-    features: ArrayLike,
-    labels: Sequence[str] | NDArray[np.generic],
+    features: ArrayLike | FeatureTable,
+    labels: Sequence[str] | NDArray[np.generic] | None = None,
     *,
     raw: bool | None = None,
 ) -> Measured:
@@ -113,7 +114,7 @@ def evaluate_table(
 
     Args:
         subject: a model; or a build, whose circuit is measured through its words.
-        features: finite numbers ``[samples, features]``.
+        features: finite numbers ``[samples, features]``; or a table that has the labels, too.
         labels: the class of each.
         raw: whether the features still have to be scaled as the model records; needed if it records that.
 

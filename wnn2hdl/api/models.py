@@ -10,9 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.api.progress import watched
 from wnn2hdl.api.showing import Shown
-from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, from_masks, from_samples
+from wnn2hdl.dataset import (
+    CLASSES,
+    SAMPLE_IMAGES,
+    SAMPLE_SIDE,
+    Dataset,
+    LabelledImage,
+    from_masks,
+    from_samples,
+)
 from wnn2hdl.dataset.tables import FeatureTable
-from wnn2hdl.encode import high_bits, parse_bits, whole_words
+from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import UNLABELLED, Picture
 from wnn2hdl.importers import ImportOptions
@@ -20,17 +28,14 @@ from wnn2hdl.importers import import_model as read_foreign_model
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.models import AnyModel, LogicModel, load_model
 from wnn2hdl.progress import Progress
-from wnn2hdl.training.budget import train_under_budget
+from wnn2hdl.training.budget import ADDRESS_BITS, RAMS, train_under_budget
 from wnn2hdl.training.context import train_context
 from wnn2hdl.training.discriminators import train as train_discriminators
 from wnn2hdl.training.discriminators import with_colours
-from wnn2hdl.training.gradient import Architecture, Recipe, enough_epochs, train_network, usual_heat
+from wnn2hdl.training.gradient import train_rows
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 from wnn2hdl.training.tables import TableOptions
 from wnn2hdl.training.tables import train_table as train_wisard
-
-SAMPLE_IMAGES, SAMPLE_SIDE = 8, 256
-"""The generated landscapes that are trained on without data."""
 
 Pictures = Path | str | Sequence[NDArray[np.uint8]]
 """A folder of pictures, or arrays uint8 ``[height, width, 3]``."""
@@ -103,11 +108,12 @@ def train(
     masks: Masks | None = None,
     *,
     luts_per_pixel: int | None = None,
+    nested: bool = False,
     neighbourhood: int | None = None,
     context: int | None = None,
     bits: str | None = None,
-    address_bits: int = 4,
-    rams: int = 16,
+    address_bits: int = ADDRESS_BITS,
+    rams: int = RAMS,
     bleaching: int | None = None,
     balanced: bool = False,
     trials: int = 20,
@@ -122,6 +128,7 @@ def train(
         masks: a folder of masks of the same stems; or for each picture an array ``[height, width]`` of class
             indices, 0 forest and 1 deforested, 255 not labelled.
         luts_per_pixel: train the most accurate classifier within so many LUTs, not discriminators.
+        nested: state the accuracy of the whole choice within that budget, made once more inside each fold.
         neighbourhood: train a classifier that looks at the 3x3 or 5x5 pixels around; 3 or 5.
         context: train a classifier that counts bits in the square around; 3, 7, 15 or 31.
         bits: of a colour that discriminators read, as in ``"R7,R6,G7"``; by default four high bits of each
@@ -137,7 +144,7 @@ def train(
     Raises:
         InputError: the images or masks cannot be used, or nothing fits the budget.
     """
-    dataset = labelled(images, masks)
+    dataset = labelled(images, masks, seed)
     with watched(progress) as report:
         if neighbourhood is not None:
             model = train_neighbourhood(
@@ -146,7 +153,9 @@ def train(
         elif context is not None:
             model = train_context(dataset, context, seed=seed, progress=report)
         elif luts_per_pixel is not None:
-            model = train_under_budget(dataset, luts_per_pixel, trials=trials, seed=seed, progress=report)
+            model = train_under_budget(
+                dataset, luts_per_pixel, trials=trials, seed=seed, progress=report, nested=nested
+            )
         else:
             model = train_discriminators(
                 dataset,
@@ -167,6 +176,7 @@ def train_table(
     *,
     options: TableOptions = TableOptions(),  # noqa: B008  # frozen
     max_luts: int | None = None,
+    epochs: int | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Model:
@@ -177,6 +187,7 @@ def train_table(
         labels: the class of each.
         options: how a WiSARD is built; of these, `levels` and `words` hold for look-up tables, too.
         max_luts: train a network of 6-input look-up tables whose whole circuit takes at most so many LUTs.
+        epochs: passes of that training over the rows; by default as many as are usually enough.
         seed: of all that is random.
         progress: called with each epoch; by default a line is shown where somebody watches.
 
@@ -187,22 +198,21 @@ def train_table(
     rows = feature_table(features, labels)
     if max_luts is None:
         return Model(train_wisard(rows, options, seed))
-    words = options.words or whole_words(rows.features)
-    if words is None:
-        raise InputError(
-            "hardware reads fixed-point words, and the features are no whole numbers",
-            hint="state a format, as in TableOptions(words=FixedPoint.parse('Q3.12'))",
-        )
-    classes, owners = rows.owned()
-    count = len(rows.labels)
-    recipe = Recipe(enough_epochs(count), heat=usual_heat(count), seed=seed)
-    architecture = Architecture(words, max_luts=max_luts, levels=options.levels)
     with watched(progress) as report:
-        return Model(train_network(rows.features, owners, classes, architecture, recipe, report).model)
+        trained = train_rows(
+            rows,
+            max_luts=max_luts,
+            levels=options.levels,
+            words=options.words,
+            epochs=epochs,
+            seed=seed,
+            progress=report,
+        )
+    return Model(trained.model)
 
 
-def labelled(images: Pictures | Dataset | None, masks: Masks | None) -> Dataset:
-    """Labelled images of folders or arrays; the generated landscapes if nothing is given.
+def labelled(images: Pictures | Dataset | None, masks: Masks | None, seed: int = 0) -> Dataset:
+    """Labelled images of folders or arrays; the generated landscapes of a seed if nothing is given.
 
     Raises:
         InputError: one of the two is missing, one is a folder and the other arrays, or shapes or types do not
@@ -211,7 +221,7 @@ def labelled(images: Pictures | Dataset | None, masks: Masks | None) -> Dataset:
     if isinstance(images, Dataset):
         return images
     if images is None and masks is None:
-        return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=0)
+        return from_samples(SAMPLE_IMAGES, SAMPLE_SIDE, seed=seed)
     if images is None or masks is None:
         raise InputError("pictures go together with masks", hint="give both")
     if isinstance(images, str | Path) and isinstance(masks, str | Path):
@@ -243,17 +253,21 @@ def labelled(images: Pictures | Dataset | None, masks: Masks | None) -> Dataset:
     return Dataset(CLASSES, tuple(pairs), read)
 
 
-def feature_table(features: ArrayLike, labels: Sequence[str] | NDArray[np.generic]) -> FeatureTable:
-    """Rows of arrays.
+def feature_table(
+    features: ArrayLike | FeatureTable, labels: Sequence[str] | NDArray[np.generic] | None
+) -> FeatureTable:
+    """Rows of arrays, or the table that is given.
 
     Raises:
         InputError: they are no finite numbers ``[samples, features]`` with a label each.
     """
+    if isinstance(features, FeatureTable):
+        return features
     numbers = np.asarray(features, dtype=np.float64)
-    if numbers.ndim != 2 or not numbers.size or len(labels) != len(numbers):
+    if labels is None or numbers.ndim != 2 or not numbers.size or len(labels) != len(numbers):
         raise InputError(
             "features are numbers [samples, features], with a label each",
-            value=f"{numbers.shape}, {len(labels)} labels",
+            value=f"{numbers.shape}, {'no' if labels is None else len(labels)} labels",
         )
     if not np.isfinite(numbers).all():
         raise InputError("a feature is not a finite number", hint="leave its row out")

@@ -111,6 +111,12 @@ def compile_model(
     return Build(folder, report, checked.failure)
 
 
+def require_equal(build: Build) -> None:
+    """Raise `CheckError` if the circuit was found to differ from the model."""
+    if build.failure is not None:
+        raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
+
+
 def require_proved(unproved: Sequence[str], allowed: Sequence[str]) -> None:
     """Raise `CheckError` if a limit left anything unproved but what is allowed."""
     left = [name for name in unproved if name not in allowed]

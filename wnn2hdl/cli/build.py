@@ -5,7 +5,7 @@ from typing import Any, get_args
 
 import click
 
-from wnn2hdl.build.compile import compile_model, require_luts, require_proved
+from wnn2hdl.build.compile import compile_model, require_equal, require_luts, require_proved
 from wnn2hdl.build.design import Mode
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.cli.finite import FiniteRange
@@ -22,7 +22,6 @@ from wnn2hdl.cli.pictures import (
     scale_option,
 )
 from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
-from wnn2hdl.errors import CheckError
 from wnn2hdl.ir import Style, VideoFormat
 from wnn2hdl.ir.models import load_model
 from wnn2hdl.ir.video import FORMATS, MAX_WIDTH, PIXELS_PER_CLOCK, Answer
@@ -221,8 +220,7 @@ def compile_command(
     if unproved := build.report["proof"]["unproved"]:
         lines.append(f"UNPROVED: {', '.join(unproved)}")
     emit(build.report, "\n".join(lines), as_json=as_json)
-    if build.failure is not None:
-        raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
+    require_equal(build)
     require_proved(build.report["proof"]["unproved"], allow_unproved)
     if options.max_luts is not None:
         require_luts(build, options.max_luts)

@@ -6,10 +6,10 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from wnn2hdl.build.compile import require_equal
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import output_option, seed_option
 from wnn2hdl.cli.output import emit, json_option, parts_table, progress
-from wnn2hdl.errors import CheckError
 from wnn2hdl.files import output_folder
 
 
@@ -58,8 +58,7 @@ def demo_command(output: Path, seed: int, as_json: bool) -> None:
     lines.append(f"Open {demo.page.resolve().as_uri()}")
     emit(data, "\n\n".join(lines), as_json=as_json)
     for build in (demo.reference, demo.smallest):
-        if build.failure is not None:
-            raise CheckError("the circuit is not the model", value=build.failure, hint=f"see {build.folder}")
+        require_equal(build)
 
 
 def _flight_table(flight: dict[str, Any]) -> str:

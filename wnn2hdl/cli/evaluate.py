@@ -9,15 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
-from wnn2hdl.build.classifier import circuit_row_answers, open_classifier, open_working_build
+from wnn2hdl.build.classifier import open_classifier
 from wnn2hdl.build.design import MODEL_FILE
 from wnn2hdl.build.folder import require_build
 from wnn2hdl.build.reporting import read_report
 from wnn2hdl.cli.light import LIGHT, Light, in_light, light_lines, light_options
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import (
-    SAMPLE_IMAGES,
-    SAMPLE_SIDE,
     file,
     folder,
     images_option,
@@ -31,7 +29,7 @@ from wnn2hdl.cli.options import (
 from wnn2hdl.cli.output import emit, json_option, printed, progress
 from wnn2hdl.cli.pictures import MASKS, READING, mask_options, reading_options
 from wnn2hdl.cli.vectors import label_option, raw_option, table_option
-from wnn2hdl.dataset import Dataset, from_samples
+from wnn2hdl.dataset import SAMPLE_IMAGES, SAMPLE_SIDE, Dataset, from_samples
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import Evaluation, Squares, evaluate, majority_labels
@@ -42,14 +40,12 @@ from wnn2hdl.evaluation.measures import (
     METHOD,
     accuracy,
     class_scores,
-    confusion_of,
     defined,
     interval,
     kappa,
     mean_iou,
-    wilson,
 )
-from wnn2hdl.evaluation.rows import load_vector_classifier, row_answers, true_classes
+from wnn2hdl.evaluation.rows import require_vector_classifier
 from wnn2hdl.evaluation.tagged import RULE, evaluate_tagged
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.lower.targets import TARGETS
@@ -235,23 +231,27 @@ def _figures(confusion: NDArray[np.int64], classes: tuple[str, ...]) -> dict[str
 
 
 def _with_table(model: Path, table: Path, label: str | None, raw: bool | None) -> tuple[dict[str, Any], str]:
+    # Not at the top: it loads what pictures need not wait for.
+    from wnn2hdl.api import Build, Model, evaluate_table, load, open_build
+
     if model.is_dir():
         require_build(model)
-    classifier = load_vector_classifier(model / MODEL_FILE if model.is_dir() else model)
+    path = model / MODEL_FILE if model.is_dir() else model
+    given = load(path)
+    classes = require_vector_classifier(given.model, path).classes
     rows = read_table(table, label)
-    truth = true_classes(classifier.classes, rows)
-    answers = {"model": row_answers(classifier, rows, raw)}
+    subjects: dict[str, Model | Build] = {"model": given}
     if model.is_dir():
-        answers = {"circuit": circuit_row_answers(open_working_build(model), rows, raw), **answers}
+        subjects = {"circuit": open_build(model), **subjects}
     found: dict[str, dict[str, Any]] = {}
-    for name, given in answers.items():
-        confusion = confusion_of(truth, given, len(classifier.classes))
-        found[name] = _figures(confusion, classifier.classes)
-        found[name]["intervals"] = {"accuracy": wilson(confusion), "kappa": None, "mean_iou": None}
+    for name, subject in subjects.items():
+        measured = evaluate_table(subject, rows, raw=raw)
+        found[name] = _figures(measured.confusion, measured.classes)
+        found[name]["intervals"] = {"accuracy": measured.interval, "kappa": None, "mean_iou": None}
     data = {
         "accuracy": next(iter(found.values()))["accuracy"],
         "samples": len(rows.labels),
-        "classes": list(classifier.classes),
+        "classes": list(classes),
         **found,
         "interval": {"method": "Wilson score", "confidence": CONFIDENCE},
     }

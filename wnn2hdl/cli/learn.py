@@ -46,8 +46,7 @@ from wnn2hdl.cli.vectors import (
     train_on_table,
     words_option,
 )
-from wnn2hdl.dataset import Dataset
-from wnn2hdl.encode import Spacing, high_bits, parse_bits
+from wnn2hdl.encode import Spacing
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
@@ -56,12 +55,9 @@ from wnn2hdl.ir.context import SIZES
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
-from wnn2hdl.progress import Progress
 from wnn2hdl.raster import Reading
-from wnn2hdl.training.budget import Point, measure, pareto_front, train_under_budget
-from wnn2hdl.training.context import train_context
-from wnn2hdl.training.discriminators import train, with_colours
-from wnn2hdl.training.neighbourhood import train_neighbourhood
+from wnn2hdl.training.budget import ADDRESS_BITS, RAMS, Point, measure, pareto_front
+from wnn2hdl.training.discriminators import with_colours
 from wnn2hdl.training.tables import TableOptions
 
 
@@ -74,19 +70,6 @@ class Discriminators:
     rams: int | None
     bleach: int | str | None
     balance: bool | None
-
-    def train(self, dataset: Dataset, seed: int, report: Progress) -> WisardModel:
-        """Train with these options, or the reference design's where they were left out."""
-        return train(
-            dataset,
-            parse_bits(self.bits) if self.bits else high_bits(),
-            address_bits=self.address_bits or 4,
-            rams=self.rams or 16,
-            bleaching=self.bleach if isinstance(self.bleach, int) else None,
-            balanced=bool(self.balance),
-            seed=seed,
-            progress=report,
-        )
 
     def require_none(self, because: str) -> None:
         """Refuse options that would have no effect."""
@@ -245,6 +228,9 @@ def train_command(
         wisard = partial(train_on_table, table, label, options, seed=seed, seeds=seeds)
         _train_on_table(wisard, table_sentence, output, as_json=as_json)
         return
+    # Not at the top: the functions for Python load what tables need not wait for.
+    from wnn2hdl.api import train
+
     refuse(TRAINING, "only a table has feature vectors, and none is given with --table")
     dataset = labelled(
         images, masks, regions=regions, chips=chips, mask_format=mask_format, reading=reading, seed=seed
@@ -266,22 +252,33 @@ def train_command(
                 dataset, trials=trials, seed=seed, progress=report, luts_per_pixel=luts_per_pixel
             )
             model = max(pareto_front(points), key=lambda point: point.accuracy).model
-        elif neighbourhood is not None:
-            chosen.require_none("--neighbourhood")
-            model = train_neighbourhood(
-                dataset, int(neighbourhood), luts_per_pixel=luts_per_pixel, seed=seed, progress=report
-            )
-        elif context is not None:
-            chosen.require_none("--context")
-            model = train_context(dataset, int(context), seed=seed, progress=report)
-        elif luts_per_pixel is not None:
-            chosen.require_none("--luts-per-pixel")
-            model = train_under_budget(
-                dataset, luts_per_pixel, trials=trials, seed=seed, progress=report, nested=nested
-            )
+            model = with_colours(model, dataset, report)
         else:
-            model = chosen.train(dataset, seed, report)
-        model = with_colours(model, dataset, report)
+            choices = {
+                "--neighbourhood": neighbourhood,
+                "--context": context,
+                "--luts-per-pixel": luts_per_pixel,
+            }
+            for option, given in choices.items():
+                if given is not None:
+                    chosen.require_none(option)
+            trained = train(
+                dataset,
+                luts_per_pixel=luts_per_pixel,
+                nested=nested,
+                neighbourhood=None if neighbourhood is None else int(neighbourhood),
+                context=None if context is None else int(context),
+                bits=chosen.bits,
+                address_bits=chosen.address_bits or ADDRESS_BITS,
+                rams=chosen.rams or RAMS,
+                bleaching=chosen.bleach if isinstance(chosen.bleach, int) else None,
+                balanced=bool(chosen.balance),
+                trials=trials,
+                seed=seed,
+                progress=report,
+            ).model
+            assert isinstance(trained, WisardModel)
+            model = trained
         command = spoken_command({"output", "as_json"})
         model = replace(model, training={**model.training, COMMAND: command})
         model.save(output)

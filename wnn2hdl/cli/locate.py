@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from wnn2hdl.apps.navigation.camera import Camera
-from wnn2hdl.apps.navigation.conventions import require_aircraft_angles
+from wnn2hdl.apps.navigation.conventions import read_flight_poses
 from wnn2hdl.apps.navigation.methods import ENGINE_METHODS, METHODS, engine_of
-from wnn2hdl.apps.navigation.poses import Pose, frame_files, read_poses
-from wnn2hdl.apps.navigation.recording import Recording, split
+from wnn2hdl.apps.navigation.poses import Pose, frame_files
+from wnn2hdl.apps.navigation.recording import Recording, unseen
 from wnn2hdl.cli.finite import FiniteRange
 from wnn2hdl.cli.main import app
 from wnn2hdl.cli.options import SizeType, file, folder, jobs_option, output_option, seed_option
@@ -20,9 +20,6 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.files import output_folder
 from wnn2hdl.ir.engine import Shape
 from wnn2hdl.raster import Reading
-
-if TYPE_CHECKING:
-    from wnn2hdl.apps.navigation.results import SearchKind
 
 REFERENCE_WINDOW_M = 95.0
 """The reference searched windows of 599x599 pixels for frames of 219x219, at half a metre per pixel."""
@@ -188,17 +185,12 @@ def locate_command(
         --calibration build/flight/calibration.json
     """
     # Not at the top: they load what other commands need not wait for.
-    from wnn2hdl.apps.navigation.flight import run_flight
+    from wnn2hdl.api import locate
     from wnn2hdl.apps.navigation.learned import Learned
     from wnn2hdl.apps.navigation.output import flight_markdown
     from wnn2hdl.apps.navigation.summary import summary, write_run
 
     given = {"--map": map_file, "--frames": frames, "--poses": poses_file}
-    searches: dict[SearchKind, float | None] = {}
-    if search in ("window", "both"):
-        searches["window"] = window_m
-    if search in ("map", "both"):
-        searches["map"] = None
     if calibration_file and calibrate:
         raise InputError(
             "--calibration takes what an earlier --calibrate learned",
@@ -209,15 +201,19 @@ def locate_command(
         raise InputError(
             "--calibrate-frames goes with a CSV file in --calibrate", value=calibrate_frames, hint="give both"
         )
+    # Before the frames are read, so that wrong sizes are told at once.
     engine = engine_of(template, segment, methods)
     known = Learned.read(calibration_file) if calibration_file else None
     with output_folder(output, "flight"), progress() as report:
+        fitted: tuple[Pose, ...] = ()
         if map_file and frames and poses_file:
-            scored, calibrating = _divided(_poses(poses_file), calibrate, calibrate_frames)
-            scored = _unseen(scored, known.poses) if known else scored
-            files = frame_files(scored, frames) | frame_files(calibrating, calibrate_frames or frames)
-            recording = Recording.of_files(map_file, files, _camera(camera_file, focal), reading)
-            recording = recording.scoring(scored)
+            scored = read_flight_poses(poses_file)
+            if known:
+                scored = unseen(scored, known.poses)
+            elif isinstance(calibrate, Path):
+                scored, fitted = _divided(scored, calibrate, calibrate_frames)
+            files = frame_files(scored, frames) | frame_files(fitted, calibrate_frames or frames)
+            flown = Recording.of_files(map_file, files, _camera(camera_file, focal), reading).scoring(scored)
         else:
             _refuse_halves(given, {"--camera": camera_file, "--focal": focal})
             if reading != Reading():
@@ -229,54 +225,30 @@ def locate_command(
                     hint="give a count to --calibrate",
                 )
             report("flight", 0, 1)
-            recording = Recording.embedded(seed)
+            flown = Recording.embedded(seed)
             report("flight", 1, 1)
-            scored, calibrating = _divided(recording.poses, calibrate, None)
-            scored = _unseen(scored, known.poses) if known else scored
-            recording = recording.scoring(scored)
-        run = run_flight(
-            recording,
-            known or calibrating,
-            searches,
-            report,
-            keys=methods,
-            engine=engine,
+        run = locate(
+            flown,
+            calibrate=known or (calibrate if isinstance(calibrate, int) else fitted),
+            methods=methods,
+            engine=None if engine is None else (engine.template, engine.segment),
+            window_m=None if search == "map" else window_m,
+            whole_map=search != "window",
             heading_deg=heading_deg,
-            scale=height_percent / 100,
+            height_share=height_percent / 100,
             jobs=jobs,
-        )
+            progress=report,
+        ).run
         written = write_run(run, output)
     data = summary(run) | {"files": [str(path) for path in written]}
     emit(data, f"{flight_markdown(run.result)}\nwritten to {output}", as_json=as_json)
 
 
-def _poses(path: Path) -> tuple[Pose, ...]:
-    """The poses of a log, whose angles are an aircraft's."""
-    poses = read_poses(path)
-    require_aircraft_angles(poses)
-    return poses
-
-
-def _unseen(poses: tuple[Pose, ...], calibrating: tuple[Pose, ...]) -> tuple[Pose, ...]:
-    """Poses that were not used to calibrate."""
-    unseen = tuple(pose for pose in poses if pose not in calibrating)
-    if not unseen:
-        raise InputError(
-            "all frames of the poses were used to calibrate", value=poses[0].frame, hint="locate other frames"
-        )
-    return unseen
-
-
 def _divided(
-    poses: tuple[Pose, ...], calibration: int | Path | None, elsewhere: Path | None
+    poses: tuple[Pose, ...], calibration: Path, elsewhere: Path | None
 ) -> tuple[tuple[Pose, ...], tuple[Pose, ...]]:
-    """Poses that are scored, and poses that calibrate, whose frames may lie in another folder."""
-    if calibration is None:
-        return poses, ()
-    if isinstance(calibration, int):
-        calibrating, scored = split(poses, calibration)
-        return scored, calibrating
-    calibrating = _poses(calibration)
+    """Poses that are scored, and those of a file that calibrate, whose frames may lie in another folder."""
+    calibrating = read_flight_poses(calibration)
     names = {pose.frame for pose in calibrating}
     # Cameras start to count again on each flight: in another folder, a name may be another frame's.
     scored = tuple(

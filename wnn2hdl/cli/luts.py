@@ -7,13 +7,12 @@ from typing import Any
 import click
 
 from wnn2hdl.dataset.tables import read_table
-from wnn2hdl.encode.thermometer import whole_words
-from wnn2hdl.errors import InputError
 from wnn2hdl.files import beside
+from wnn2hdl.ir import Thermometer
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.progress import Progress
-from wnn2hdl.training.gradient import Architecture, Recipe, enough_epochs, train_network, usual_heat
+from wnn2hdl.training.gradient import train_rows
 
 OPTIONS = ("--max-luts", "--epochs", "--distort")
 
@@ -76,42 +75,28 @@ def train_luts_on_table(
             to distort, or nothing fits.
     """
     rows = read_table(table, label, "train")
-    classes, owners = rows.owned()
-    if distort and rows.grid is None:
-        raise InputError(
-            "only pictures can be distorted",
-            value=table,
-            hint="give arrays [samples, rows, columns] in an .npz file",
-        )
-    form = whole_words(rows.features) if words is None else words
-    if form is None:
-        raise InputError(
-            "hardware reads fixed-point words, and the features are no whole numbers",
-            value=table,
-            hint="state a format with --input, as in --input Q3.12",
-        )
-    architecture = Architecture(form, max_luts=max_luts, levels=levels, grid=rows.grid, distortions=distort)
-    count = len(rows.labels)
-    passes = enough_epochs(count) if epochs is None else epochs
-    recipe = Recipe(passes, heat=usual_heat(count), seed=seed)
-    checkpoint = beside(output, CHECKPOINT)
-    trained = train_network(rows.features, owners, classes, architecture, recipe, progress, checkpoint)
-    figures = {
-        "luts": trained.luts,
-        "validation": trained.validation,
-        "epochs": trained.epochs,
-        "nodes_per_class": trained.nodes,
-        "seed": seed,
-        "rows": len(rows.labels),
-    }
+    trained = train_rows(
+        rows,
+        max_luts=max_luts,
+        levels=levels,
+        words=words,
+        epochs=epochs,
+        distort=distort,
+        seed=seed,
+        progress=progress,
+        checkpoint=beside(output, CHECKPOINT),
+        source=table,
+    )
+    figures = trained.model.origin["training"]
     model = replace(trained.model, origin={"training": figures | {COMMAND: command}})
+    assert isinstance(model.encoder, Thermometer)
     model.save(output)
     return {
         "model": str(output),
         "kind": model.kind,
-        "classes": list(classes),
+        "classes": list(model.classes),
         "features": len(rows.columns),
-        "input": str(form),
+        "input": str(model.encoder.input),
         "input_bits": model.encoder.width,
         "nodes": model.layers[-1].nodes,
         **figures,

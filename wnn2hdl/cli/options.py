@@ -10,7 +10,14 @@ import click
 from click.core import ParameterSource
 
 from wnn2hdl.cli.finite import FiniteRange
-from wnn2hdl.dataset import Dataset, from_masks, from_regions, from_samples
+from wnn2hdl.dataset import (
+    SAMPLE_IMAGES,
+    SAMPLE_SIDE,
+    Dataset,
+    from_masks,
+    from_regions,
+    from_samples,
+)
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import MAX_SIDE
 from wnn2hdl.images import MaskFormat
@@ -18,10 +25,6 @@ from wnn2hdl.ir.engine import Shape
 from wnn2hdl.raster import Reading
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
-
-SAMPLE_IMAGES = 12
-SAMPLE_SIDE = 256
-"""The embedded default: this many landscapes, and the pixels on a side of each."""
 
 folder = click.Path(file_okay=False, path_type=Path)
 file = click.Path(dir_okay=False, path_type=Path)

@@ -5,8 +5,9 @@ from pathlib import Path
 import click
 
 from wnn2hdl.cli.main import app
-from wnn2hdl.cli.options import SAMPLE_IMAGES, SAMPLE_SIDE, output_option, seed_option
+from wnn2hdl.cli.options import output_option, seed_option
 from wnn2hdl.cli.output import emit, json_option, progress
+from wnn2hdl.dataset import SAMPLE_IMAGES, SAMPLE_SIDE
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.samples.flight import FULL_MAP, make_flight, write_flight
 from wnn2hdl.samples.landscapes import IMAGES, KINDS, MASKS, PALETTE, write_landscapes

@@ -11,6 +11,9 @@ from wnn2hdl.raster import Reading
 from wnn2hdl.samples import CLASSES as SAMPLE_CLASSES
 from wnn2hdl.samples import landscape
 
+SAMPLE_IMAGES, SAMPLE_SIDE = 12, 256
+"""The embedded default: so many landscapes, and the pixels on a side of each."""
+
 
 def from_masks(
     images: Path,

@@ -7,13 +7,14 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.apps.navigation.distance import course_deg, geodesic_m
 from wnn2hdl.apps.navigation.geometry import MAX_OBLIQUE_DEG
-from wnn2hdl.apps.navigation.poses import Pose
+from wnn2hdl.apps.navigation.poses import Pose, read_poses
 from wnn2hdl.apps.navigation.world import WorldMap
 from wnn2hdl.errors import InputError
 
@@ -80,6 +81,17 @@ def may_be_radians(poses: Sequence[Pose]) -> bool:
         abs(pose.yaw_deg) <= 2 * math.pi and max(abs(pose.pitch_deg), abs(pose.roll_deg)) <= math.pi
         for pose in poses
     )
+
+
+def read_flight_poses(path: Path) -> tuple[Pose, ...]:
+    """The poses of a log whose angles are an aircraft's.
+
+    Raises:
+        InputError: as `read_poses` and `require_aircraft_angles`.
+    """
+    poses = read_poses(path)
+    require_aircraft_angles(poses)
+    return poses
 
 
 def require_aircraft_angles(poses: Sequence[Pose]) -> None:

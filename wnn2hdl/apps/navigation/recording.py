@@ -134,3 +134,13 @@ def split(poses: Sequence[Pose], calibrating: int) -> tuple[tuple[Pose, ...], tu
         tuple(pose for i, pose in enumerate(poses) if i in chosen),
         tuple(pose for i, pose in enumerate(poses) if i not in chosen),
     )
+
+
+def unseen(poses: Sequence[Pose], calibrating: Sequence[Pose]) -> tuple[Pose, ...]:
+    """Poses of frames that nothing was fitted on; raises InputError if there are none."""
+    left = tuple(pose for pose in poses if pose not in calibrating)
+    if not left:
+        raise InputError(
+            "all frames of the poses were used to calibrate", value=poses[0].frame, hint="locate other frames"
+        )
+    return left

@@ -3,11 +3,13 @@
 One layer of nodes reads chosen bits of the features; each node votes for a class, and the most votes win.
 What a node reads and what its table says are both learned, by finite differences that pass straight through
 the steps (as in DWN, Bacellar et al., ICML 2024). `train_network` trains one, for a number of nodes or
-within a number of LUTs; `LutNetworkClassifier` does so as a scikit-learn estimator.
+within a number of LUTs; `train_rows` does so from the rows of a table, `LutNetworkClassifier` as a
+scikit-learn estimator.
 """
 
 from wnn2hdl.training.gradient.classifier import LutNetworkClassifier
 from wnn2hdl.training.gradient.network import Architecture, Trained, train_network
+from wnn2hdl.training.gradient.rows import train_rows
 from wnn2hdl.training.gradient.training import Recipe, enough_epochs, usual_heat
 
 __all__ = [
@@ -17,5 +19,6 @@ __all__ = [
     "Trained",
     "enough_epochs",
     "train_network",
+    "train_rows",
     "usual_heat",
 ]
