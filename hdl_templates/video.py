@@ -30,6 +30,7 @@ from amaranth.lib.wiring import In, Out
 from hdl_templates.across import across
 from hdl_templates.hierarchy import Part, place
 from hdl_templates.scan import HEIGHT_BITS, Pixels, scan
+from hdl_templates.squares import Squares, majorities
 from hdl_templates.stream import queued
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, VideoFormat
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
@@ -75,6 +76,7 @@ class VideoCore(Part):
         windows: likewise the circuit of a 3x3 window of such values, or of one bit each that says whether the
             value is not 0: one input, and one output of one bit. None where no edge is asked for.
         neighbours: how classes follow from the pixels around a pixel; None where each has its own.
+        classes: how many there are, for squares.
 
     Members:
         aresetn: In, synchronous reset, active low.
@@ -82,6 +84,8 @@ class VideoCore(Part):
             cycles before a frame's first beat. Only where the core keeps lines.
         s_axis_video_*: the stream of pixels.
         m_axis_video_*: the stream of answers.
+        m_axis_squares_*: the stream of the majorities of squares, one a beat, as a frame for each frame. Only
+            where squares are sent.
 
     Raises:
         ValueError: there are other circuits than these.
@@ -98,6 +102,7 @@ class VideoCore(Part):
         pixels: Sequence[Part],
         windows: Sequence[Part],
         neighbours: Neighbours | None = None,
+        classes: int = 2,
     ) -> None:
         wanted = video.pixels_per_clock
         if (
@@ -109,12 +114,14 @@ class VideoCore(Part):
                 "a core needs a circuit for each pixel of a beat, and one for each edge it sends"
             )
         self.video, self.neighbours = video, neighbours
+        self.squares = None if video.square is None else Squares(video.square, classes)
         self.pixels, self.windows = tuple(pixels), tuple(windows)
         members = {
             "aresetn": In(1),
             "height": In(HEIGHT_BITS),
             **_stream("s_axis_video", video.pixel_bits * len(pixels), In, Out),
             **_stream("m_axis_video", ANSWER_BITS * len(pixels), Out, In),
+            **(_stream("m_axis_squares", ANSWER_BITS, Out, In) if self.squares else {}),
         }
         super().__init__(
             {name: member for name, member in members.items() if name != "height" or self.has_lines}
@@ -123,7 +130,7 @@ class VideoCore(Part):
     @property
     def has_lines(self) -> bool:
         """Whether it keeps lines, and so counts them."""
-        return bool(self.windows) or self.neighbours is not None
+        return bool(self.windows) or self.neighbours is not None or self.squares is not None
 
     @property
     def places(self) -> int:
@@ -141,7 +148,7 @@ class VideoCore(Part):
     @property
     def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
         """See `Part.port_attributes`: what groups the ports in Vivado's IP Integrator (AMD UG1118)."""
-        streams = ("s_axis_video", "m_axis_video")
+        streams = ("s_axis_video", "m_axis_video", *(["m_axis_squares"] if self.squares else []))
         reset, axis = "xilinx.com:signal:reset:1.0", "xilinx.com:interface:axis:1.0"
         return {
             self.clock: {
@@ -183,11 +190,12 @@ class VideoCore(Part):
         pixels = Pixels(head.valid, head.word[0], head.word[1], None, _split(head.word[2:], self.pixels))
         if self.neighbours is not None:
             pixels, taken = self._look_around(m, pixels, taken, self.neighbours, reset, platform)
-        if self.windows:
+        if self.windows or (self.squares and pixels.final is None):
             self._find_edges(m, pixels, taken, reset, platform)
         else:
-            m.d.comb += taken.eq(self.m_axis_video_tready)
-            self._answer(m, pixels.valid, pixels.start, pixels.last, pixels.values)
+            room = self._vote(m, pixels, self.m_axis_video_tready)
+            m.d.comb += taken.eq(self.m_axis_video_tready & room)
+            self._answer(m, pixels.valid & room, pixels.start, pixels.last, pixels.values)
         return ResetInserter(reset)(m)
 
     def _look_around(
@@ -237,17 +245,42 @@ class VideoCore(Part):
         start, last, final = head.word[:3]
         return Pixels(head.valid, start, last, final, _split(head.word[3:], neighbours.parts)), leaves
 
+    def _vote(self, m: Module, beat: Pixels, room: Value) -> Value:
+        """Let squares count a beat that is offered; returns whether they can."""
+        if self.squares is None:
+            return Const(1, 1)
+        ready = Signal(name="squares_ready")
+        head = majorities(
+            m,
+            self.squares,
+            beat,
+            places=self.places,
+            room=room,
+            ready=ready,
+            taken=self.m_axis_squares_tready,
+        )
+        m.d.comb += [
+            self.m_axis_squares_tvalid.eq(head.valid),
+            Cat(self.m_axis_squares_tuser, self.m_axis_squares_tlast, self.m_axis_squares_tdata).eq(
+                head.word
+            ),
+        ]
+        return ready
+
     def _find_edges(self, m: Module, pixels: Pixels, taken: Signal, reset: Value, platform: object) -> None:
-        """The edges between pixels, and the answers."""
-        depth, bits = len(_input(self.windows[0])) // WINDOW_BITS, len(pixels.values[0])
+        """The edges between pixels, if there are any, and the answers; frames whose last line is marked."""
+        bits = len(pixels.values[0])
+        depth = len(_input(self.windows[0])) // WINDOW_BITS if self.windows else 0
         # What is sent is kept of the line in the middle, what windows see of two lines.
-        sends, looks = 0 if self.video.answer == "edge" else bits, bits
-        if depth == bits:
+        sends, looks = 0 if self.video.answer == "edge" and not self.squares else bits, bits
+        if not depth:
+            values, kept = pixels.values, [1] * bits
+        elif depth == bits:
             values, kept = pixels.values, [2] * bits
         else:
             values, kept = [Cat(value[:sends], value.any()) for value in pixels.values], [1] * sends + [2]
             looks = len(kept)
-        moves = Signal(name="moves")
+        moves, room = Signal(name="moves"), Signal(name="answers_ready")
         columns = scan(
             m,
             "",
@@ -266,24 +299,29 @@ class VideoCore(Part):
         ]
         sent = [Cat(*(bits[bit][1] for bit in range(sends))) for bits in columns.bits if sends]
         beat = across(m, "", columns, words, sent, reach=1, moves=moves)
-        for number, (part, window) in enumerate(zip(self.windows, beat.words, strict=True)):
+        for number, part in enumerate(self.windows):
             place(m, f"window_{number}", part, platform)
-            rows = [column.word_select(row, depth) for row in range(SIDE) for column in window]
+            rows = [column.word_select(row, depth) for row in range(SIDE) for column in beat.words[number]]
             m.d.comb += _input(part).eq(Cat(*rows))
-        latency = self.windows[0].latency
+        passing = Pixels(beat.valid, beat.start, beat.last, beat.final, beat.sent)
+        counted = self._vote(m, passing, room)
+        m.d.comb += moves.eq(room & counted)
+        latency = self.windows[0].latency if self.windows else 0
         delayed = _delayed(m, "answers", latency, beat.start, beat.last, *beat.sent)
         answers = queued(
             m,
             "answers",
-            valid=beat.valid,
-            ready=moves,
+            valid=beat.valid & counted,
+            ready=room,
             word=Cat(*delayed, *map(_output, self.windows)),
             latency=latency,
             taken=self.m_axis_video_tready,
         )
         start, last, found = answers.word[0], answers.word[1], answers.word[2:]
-        edges = found[-len(self.windows) :]
-        if not sends:
+        edges = found[len(found) - len(self.windows) :]
+        if self.video.answer == "class":
+            answered = [found.word_select(number, sends) for number in range(len(self.pixels))]
+        elif self.video.answer == "edge":
             answered = [edge.replicate(ANSWER_BITS) for edge in edges]
         else:
             answered = [

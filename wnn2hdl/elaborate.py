@@ -42,7 +42,12 @@ def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
 
 
 def video_core(
-    circuit: Circuit, video: VideoFormat, neighbourhood: Neighbourhood | None, *, style: Style
+    circuit: Circuit,
+    video: VideoFormat,
+    neighbourhood: Neighbourhood | None,
+    *,
+    classes: int,
+    style: Style,
 ) -> VideoCore:
     """The hardware of a video core.
 
@@ -50,6 +55,7 @@ def video_core(
         circuit: the circuits of the core, see `wnn2hdl.lower.deforestation.video`.
         video: its streams.
         neighbourhood: what its model looks at around a pixel; None of a model of single pixels.
+        classes: how many classes there are.
         style: how its LUT networks are written.
     """
     pixels, decisions, windows = (
@@ -66,7 +72,7 @@ def video_core(
         places = zip(neighbourhood.sources, neighbourhood.taps, strict=True)
         taps = [(source, tap.row, tap.column) for source, tap in places]
         neighbours = Neighbours(neighbourhood.size, taps, decisions)
-    return VideoCore(video=video, pixels=pixels, windows=windows, neighbours=neighbours)
+    return VideoCore(video=video, pixels=pixels, windows=windows, neighbours=neighbours, classes=classes)
 
 
 def match_engine(circuit: Circuit, engine: EngineFormat, *, style: Style) -> MatchEngine:

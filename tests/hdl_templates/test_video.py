@@ -119,10 +119,11 @@ def run(
     offers: float = 0.7,
     takes: float = 0.7,
     cycles: int = 0,
+    squares: list[Beat] | None = None,
 ) -> tuple[list[Beat], int]:
     """What comes out of a core for the beats, and after how many cycles all were taken; None is a reset.
 
-    It runs until nothing has moved for 40 cycles, or for ``cycles``.
+    It runs until nothing has moved for 40 cycles, or for ``cycles``. What comes of squares is put in a list.
     """
     draw = random.Random(0)
     found: list[Beat] = []
@@ -133,7 +134,7 @@ def run(
         if dut.has_lines:
             ctx.set(dut.height, height)
         left = [None, *beats][::-1]
-        offered, held, idle, cycle = False, None, 0, 0
+        offered, held, waiting, idle, cycle = False, None, None, 0, 0
         while idle < 40 and (not cycles or cycle < cycles):
             resets = bool(left) and left[-1] is None
             if resets:
@@ -147,6 +148,16 @@ def run(
             ready = draw.random() < takes
             ctx.set(dut.s_axis_video_tvalid, offered)
             ctx.set(dut.m_axis_video_tready, ready)
+            if squares is not None:
+                ctx.set(dut.m_axis_squares_tready, takes_square := draw.random() < takes)
+                square = tuple(
+                    ctx.get(getattr(dut, f"m_axis_squares_{name}")) for name in ("tdata", "tuser", "tlast")
+                )
+                offers_square = bool(ctx.get(dut.m_axis_squares_tvalid))
+                assert waiting is None or (offers_square and square == waiting)
+                waiting = square if offers_square and not takes_square and not resets else None
+                if offers_square and takes_square and not resets:
+                    squares.append(square)
             valid = bool(ctx.get(dut.m_axis_video_tvalid))
             now = tuple(ctx.get(getattr(dut, f"m_axis_video_{name}")) for name in ("tdata", "tuser", "tlast"))
             assert held is None or (valid and now == held), "a beat was offered, then changed or withdrawn"

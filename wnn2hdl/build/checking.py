@@ -184,7 +184,7 @@ class _Simulations:
                 core,
                 design.style,
                 {"pixels": beats.pixels, "starts": beats.starts, "ends": beats.ends},
-                {"answers": beats.answers},
+                {"answers": beats.answers, "squares": np.array(beats.voted())},
                 design.video,
             )
         if design.engine is not None:

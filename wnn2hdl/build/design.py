@@ -173,6 +173,8 @@ class Design:
                 f"Pixels: {kind}, {self.video.pixels_per_clock} per clock; answer {self.video.answer}, "
                 f"lines of up to {self.video.max_width} pixels."
             )
+            if self.video.square is not None:
+                lines.append(f"Majorities of squares of {self.video.square}x{self.video.square} pixels.")
         if self.engine is not None:
             (height, width), (rows, columns) = self.engine.template, self.engine.segment
             lines.append(

@@ -10,6 +10,7 @@ from amaranth.lib.wiring import In, Out
 from hdl_templates import sobel
 from hdl_templates.hierarchy import Part
 from hdl_templates.sobel_video import SobelCore
+from hdl_templates.video import VideoCore
 from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.streaming import sample_frames
@@ -87,7 +88,16 @@ def top_part(design: Design) -> Part:
         return elaborate.match_engine(design.top, design.engine, style=design.style)
     if design.video is None:
         return elaborate.component(design.top, style=design.style)
-    return elaborate.video_core(design.top, design.video, design.neighbourhood, style=design.style)
+    return video_part(design)
+
+
+def video_part(design: Design) -> VideoCore:
+    """The hardware of a video core."""
+    assert design.video is not None
+    classes = len(design.picture_model.classes)
+    return elaborate.video_core(
+        design.top, design.video, design.neighbourhood, classes=classes, style=design.style
+    )
 
 
 def baseline_module(design: Design) -> str:
@@ -164,8 +174,8 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         bench = stream_testbench(
             name=top,
             video=design.video,
-            count=len(frames),
-            height=frames.height,
+            beats=frames,
+            has_height=video_part(design).has_lines,
             vectors_file=files.vectors.name,
             sources=sources,
         )

@@ -71,6 +71,7 @@ class CompileOptions:
         format: of a video core: a pixel's channels from the least significant byte, or ``mono``.
         answer: of a video core: ``class``, ``edge`` or ``both``.
         pixels_per_clock: of a video core: 1, 2 or 4.
+        square: of a video core: send majorities of squares of so many pixels' side as well; None for none.
         template: of a match engine: rows and columns of the template.
         segment: of a match engine: rows and columns of the segment of the map that it is looked for in.
         frames_per_second: of a match engine: how many templates it matches at this `clock`.
@@ -110,6 +111,7 @@ class CompileOptions:
     segment: Shape | None = None
     frames_per_second: float | None = None
     pixels_per_clock: int = VideoFormat.pixels_per_clock
+    square: int | None = VideoFormat.square
     test_images: Path | None = None
     test_masks: Path | None = None
     test_table: Path | None = None
@@ -266,7 +268,15 @@ def _video(options: CompileOptions) -> VideoFormat:
             value=f"{options.clock:g} MHz",
             hint=f"give at most --clock {MAX_CLOCK:g}, and more --pixels-per-clock",
         )
-    return VideoFormat(options.max_width, options.format, options.answer, options.pixels_per_clock)
+    if options.square is not None and options.square % options.pixels_per_clock:
+        raise InputError(
+            "a square is as wide as whole beats",
+            value=f"--square {options.square} --pixels-per-clock {options.pixels_per_clock}",
+            hint="give a multiple, or fewer pixels per clock",
+        )
+    return VideoFormat(
+        options.max_width, options.format, options.answer, options.pixels_per_clock, options.square
+    )
 
 
 def _engine(options: CompileOptions) -> EngineFormat:

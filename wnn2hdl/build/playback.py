@@ -12,10 +12,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from wnn2hdl.build.design import CLASSIFIERS, Design
-from wnn2hdl.build.emission import Files
+from wnn2hdl.build.emission import Files, video_part
 from wnn2hdl.build.streaming import beats, framed_answers
 from wnn2hdl.build.verification import open_build
-from wnn2hdl.elaborate import component, video_core
+from wnn2hdl.elaborate import component
 from wnn2hdl.errors import CheckError, InputError
 from wnn2hdl.images import read_rgb
 from wnn2hdl.ir import CENTRE, CHANNELS, PIXEL_BITS, WINDOW_BITS
@@ -45,6 +45,7 @@ class Playback:
         foreground: bool, one for each window's place, whether the circuit takes the middle for foreground.
         edges: bool, same shape, its edge bit; None of a circuit that has none.
         frame: of a video core what it sends, uint8 of the same shape; None of all others.
+        squares: of one with squares their majorities, uint8 ``[rows, columns]``; None of all others.
     """
 
     windows: int
@@ -54,6 +55,7 @@ class Playback:
     foreground: NDArray[np.bool_]
     edges: NDArray[np.bool_] | None
     frame: NDArray[np.uint8] | None = None
+    squares: NDArray[np.uint8] | None = None
 
 
 def play(
@@ -163,17 +165,27 @@ def _play_frame(
     progress("simulating pixels", 0, len(frame))
     started = time.perf_counter()
     if simulator == "amaranth":
-        core = video_core(design.top, design.video, design.neighbourhood, style=design.style)
+        core = video_part(design)
         seconds = simulate_stream(
             core, frame, progress=partial(progress, "simulating pixels"), vcd=vcd
         ).seconds
     else:
         module = design.module(design.circuit.name)
-        seconds = run_stream(frame, design.video, module, files.simulated, simulator)
+        has_height = video_part(design).has_lines
+        seconds = run_stream(frame, design.video, module, files.simulated, simulator, has_height=has_height)
         progress("simulating pixels", len(frame), len(frame))
     compile_seconds = time.perf_counter() - started - seconds if simulator != "amaranth" else 0.0
     sent = frame.answers.reshape(height, -1)[:, :width]
-    return Playback(height * width, cared, seconds, compile_seconds, framed.classes != 0, framed.edges, sent)
+    return Playback(
+        height * width,
+        cared,
+        seconds,
+        compile_seconds,
+        framed.classes != 0,
+        framed.edges,
+        sent,
+        next(iter(frame.squares), None),
+    )
 
 
 def _check_cared(design: Design, part: str, inputs: Samples, answers: Samples) -> float:

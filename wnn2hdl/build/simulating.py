@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from wnn2hdl.build.design import Design
+from wnn2hdl.build.emission import video_part
 from wnn2hdl.build.streaming import sample_frames
-from wnn2hdl.elaborate import component, match_engine, video_core
+from wnn2hdl.elaborate import component, match_engine
 from wnn2hdl.errors import CheckError
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.tools import run
@@ -80,9 +81,7 @@ def _simulate(design: Design, part: str) -> SimulationResult:
         small = design.engine.small()
         return simulate_engine(match_engine(design.top, small, style=design.style), small.sample_rounds())
     if part not in design.parts:
-        assert design.video is not None
-        core = video_core(design.top, design.video, design.neighbourhood, style=design.style)
-        return simulate_stream(core, sample_frames(design))
+        return simulate_stream(video_part(design), sample_frames(design))
     claim = design.specification.claims[part]
     inputs = simulated_inputs(design, claim)
     assert inputs is not None

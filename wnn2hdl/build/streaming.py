@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.build.design import Design
 from wnn2hdl.errors import InputError
+from wnn2hdl.evaluation.squares import vote
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, Neighbourhood, bits_to_codes, codes_to_bits
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
 from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits
@@ -92,7 +93,16 @@ def beats(design: Design, pictures: Sequence[NDArray[np.uint8]]) -> Beats:
         [design.video.pixels(picture) for picture in padded],
         [design.video.answers(answers.classes, answers.edges) for answers in framed],
         design.video.pixels_per_clock,
+        [] if design.video.square is None else [_majorities(design, answers.classes) for answers in framed],
     )
+
+
+def _majorities(design: Design, classes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The majority of each square of a picture of classes, uint8 ``[rows, columns]``."""
+    assert design.video is not None
+    assert design.video.square is not None
+    side, count = design.video.square, len(design.picture_model.classes)
+    return vote(classes, None, side=side, share=1.0, seed=0, count=count)[::side, ::side]
 
 
 def sample_frames(design: Design) -> Beats:

@@ -24,7 +24,7 @@ from wnn2hdl.cli.pictures import (
 from wnn2hdl.cli.vectors import label_option, most_changed_option, raw_option
 from wnn2hdl.ir import Style, VideoFormat
 from wnn2hdl.ir.models import load_model
-from wnn2hdl.ir.video import FORMATS, MAX_WIDTH, PIXELS_PER_CLOCK, Answer
+from wnn2hdl.ir.video import FORMATS, MAX_SQUARE, MAX_WIDTH, PIXELS_PER_CLOCK, Answer
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.schedule import MAX_STAGES
 
@@ -168,6 +168,12 @@ SECTIONS = {
     default=VideoFormat.answer,
     show_default=True,
     help="Send class, edge or both of video.",
+)
+@click.option(
+    "--square",
+    type=click.IntRange(2, MAX_SQUARE),
+    metavar="N",
+    help="Also send the majorities of NxN squares.",
 )
 @click.option("--template", type=SizeType(), help="Make an engine for templates of this size.")
 @click.option("--segment", type=SizeType(), help="Let it look for them in segments of this size.")

@@ -106,7 +106,12 @@ def simulate_command(
         result = play(build, image, simulator, report, vcd, reading)
     output = output or build / "simulation"
     make_folder(output)
-    found = {"class": result.foreground, "edge": result.edges, "frame": result.frame}
+    found = {
+        "class": result.foreground,
+        "edge": result.edges,
+        "frame": result.frame,
+        "squares": result.squares,
+    }
     pictures = {name: array for name, array in found.items() if array is not None}
     for name, array in pictures.items():
         write_png(output / f"{image.stem}-{name}.png", array)

@@ -1,6 +1,7 @@
 """A testbench of a video core that checks itself against the model's answers, in plain Verilog-2001."""
 
 from collections.abc import Sequence
+from itertools import chain
 
 from wnn2hdl.ir.video import ANSWER_BITS, Beats, VideoFormat
 
@@ -12,16 +13,54 @@ def stream_vectors(beats: Beats, video: VideoFormat) -> str:
     """Beats in the format of ``$readmemh``, a line each.
 
     In the order of the bits from the highest: TUSER and TLAST, which are the same on both sides, the answers,
-    the pixels; of both those on the right first.
+    the pixels; of both those on the right first. Behind them the beats of squares, whose majority is an
+    answer.
     """
     marks = (beats.starts.astype(int) << 1 | beats.ends).tolist()
     answer, pixel = (bits * video.pixels_per_clock // 4 for bits in (ANSWER_BITS, video.pixel_bits))
     words = zip(marks, beats.expected(), beats.sent(video.pixel_bits), strict=True)
-    return "".join(f"{mark:x}{answers:0{answer}x}{pixels:0{pixel}x}\n" for mark, answers, pixels in words)
+    squares = ((start << 1 | last, majority, 0) for majority, start, last in beats.voted())
+    return "".join(
+        f"{mark:x}{answers:0{answer}x}{pixels:0{pixel}x}\n" for mark, answers, pixels in chain(words, squares)
+    )
+
+
+_SIGNALS = ("tdata", "tvalid", "tready", "tuser", "tlast")
+
+_SQUARES_DECLARED = """\
+    reg q_tready = 1'b0;
+    integer voted = 0;
+    wire [7:0] q_tdata;
+    wire q_tvalid, q_tuser, q_tlast;
+"""
+
+_SQUARES_DRAWN = """\
+            q_tready = random[17:16] != 2'b00;
+"""
+
+_SQUARES_CHECKED = """\
+            if (q_tvalid && q_tready) begin
+                expected = vectors[{count} + voted];
+                if (voted >= {votes} || {{q_tuser, q_tlast}} !== expected[{marks}:{marks} - 1]
+                    || q_tdata !== expected[{low} + 7:{low}]) begin
+                    $display("FAIL: {name}, square %0d of {votes}", voted);
+                    $display("  tuser, tlast, tdata = %h", {{q_tuser, q_tlast, q_tdata}});
+                    $stop;
+                    $finish;
+                end
+                voted = voted + 1;
+            end
+"""
 
 
 def stream_testbench(
-    *, name: str, video: VideoFormat, count: int, height: int, vectors_file: str, sources: Sequence[str]
+    *,
+    name: str,
+    video: VideoFormat,
+    beats: Beats,
+    has_height: bool,
+    vectors_file: str,
+    sources: Sequence[str],
 ) -> str:
     """A self-checking testbench ``NAME_tb`` for a video core ``NAME``.
 
@@ -31,26 +70,31 @@ def stream_testbench(
     Args:
         name: the module of the core.
         video: its streams.
-        count: how many beats the file holds.
-        height: lines of the highest frame.
-        vectors_file: name of the file with the `stream_vectors`, without a folder.
+        has_height: whether the core counts lines.
+        beats: what it sends and has to get.
+        vectors_file: name of the file with the `stream_vectors` of these beats, without a folder.
         sources: names of the Verilog files of the core, for the comment that says how to run it.
     """
     files = " ".join([*sources, f"{name}_tb.v"])
-    told = f"        .height(12'd{height % 4096}),\n" if video.has_edges else ""
+    count, votes = len(beats), len(beats.voted())
+    told = f"        .height(12'd{beats.height % 4096}),\n" if has_height else ""
     pixels, answers = (bits * video.pixels_per_clock for bits in (video.pixel_bits, ANSWER_BITS))
     word = pixels + answers + 2
     streams = ",\n".join(
-        f"        .{side}_axis_video_{signal}({side}_{signal})"
-        for side in "sm"
-        for signal in ("tdata", "tvalid", "tready", "tuser", "tlast")
+        f"        .{side}_axis_video_{signal}({side}_{signal})" for side in "sm" for signal in _SIGNALS
     )
+    declared, drawn, checked, waits = "", "", "", f"received < {count}"
+    if video.square is not None:
+        streams += "".join(f",\n        .m_axis_squares_{signal}(q_{signal})" for signal in _SIGNALS)
+        declared, drawn = _SQUARES_DECLARED, _SQUARES_DRAWN
+        waits += f" || voted < {votes}"
+        checked = _SQUARES_CHECKED.format(name=name, count=count, votes=votes, marks=word - 1, low=pixels)
     return f"""\
 // Checks {name} against {count} answers of the model; run it in this folder,
 // with Icarus:    iverilog -o {name}_tb {files} && vvp -N {name}_tb
 // with Verilator: verilator --binary --top-module {name}_tb {files} && obj_dir/V{name}_tb
 module {name}_tb;
-    reg [{word - 1}:0] vectors [0:{count - 1}];
+    reg [{word - 1}:0] vectors [0:{count + votes - 1}];
     reg [{word - 1}:0] sending;
     reg [{word - 1}:0] expected;
     reg [31:0] random = 32'h1;
@@ -66,7 +110,7 @@ module {name}_tb;
     wire s_tready;
     wire [{answers - 1}:0] m_tdata;
     wire m_tvalid, m_tuser, m_tlast;
-
+{declared}
     {name} dut (
         .aclk(aclk),
         .aresetn(aresetn),
@@ -83,20 +127,20 @@ module {name}_tb;
             #1 aclk = 1'b0;
         end
         aresetn = 1'b1;
-        while (received < {count} && idle < {_PATIENCE}) begin
+        while (({waits}) && idle < {_PATIENCE}) begin
             // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
             random = random ^ (random << 13);
             random = random ^ (random >> 17);
             random = random ^ (random << 5);
             s_tvalid = s_tvalid || (sent < {count} && random[1:0] != 2'b00);
             m_tready = random[9:8] != 2'b00;
-            sending = s_tvalid ? vectors[sent] : {{{word}{{1'bx}}}};
+{drawn}            sending = s_tvalid ? vectors[sent] : {{{word}{{1'bx}}}};
             expected = vectors[received];
             #1;
             taken = s_tvalid && s_tready;
             given = m_tvalid && m_tready;
             // A beat with unknown bits was not read: the file is missing or too short.
-            if ((given && (^expected === 1'bx
+            if ((given && (received >= {count} || ^expected === 1'bx
                 || {{m_tuser, m_tlast, m_tdata}} !== expected[{word - 1}:{pixels}]))
                 || (^{{s_tready, m_tvalid}} === 1'bx)) begin
                 $display("FAIL: {name}, beat %0d of {count}", received);
@@ -105,7 +149,7 @@ module {name}_tb;
                 $stop;
                 $finish;
             end
-            #1 aclk = 1'b1;
+{checked}            #1 aclk = 1'b1;
             #1 aclk = 1'b0;
             if (taken) begin
                 sent = sent + 1;
@@ -114,7 +158,7 @@ module {name}_tb;
             if (given) received = received + 1;
             idle = taken || given ? 0 : idle + 1;
         end
-        if (received < {count}) begin
+        if ({waits}) begin
             $display("FAIL: {name} stopped after %0d of {count} beats", received);
             $stop;
             $finish;

@@ -31,6 +31,9 @@ MAX_HEIGHT = 4096
 PIXELS_PER_CLOCK = (1, 2, 4)
 """How many pixels a beat can have."""
 
+MAX_SQUARE = 256
+"""The longest side of squares, in pixels."""
+
 MAX_CLOCK = 300.0
 """Megahertz for which the registers around the circuits of a core are made: 4K60 at two pixels takes 297."""
 
@@ -47,12 +50,15 @@ class VideoFormat:
         format: of a pixel, one of `FORMATS`; AXI4-Stream Video (AMD UG934) has ``GBR``.
         answer: what is sent of each pixel.
         pixels_per_clock: pixels of a beat, one of `PIXELS_PER_CLOCK`; the left one is the least significant.
+        square: pixels of the side of squares whose majorities are sent as well, at most `MAX_SQUARE` and a
+            multiple of the pixels of a beat; None for no squares.
     """
 
     max_width: int = 1920
     format: str = "GBR"
     answer: Answer = "both"
     pixels_per_clock: int = 1
+    square: int | None = None
 
     def __post_init__(self) -> None:
         if not 2 <= self.max_width <= MAX_WIDTH:
@@ -63,6 +69,10 @@ class VideoFormat:
             raise ValueError(f"a video core answers one of {get_args(Answer)}, not {self.answer!r}")
         if self.pixels_per_clock not in PIXELS_PER_CLOCK:
             raise ValueError(f"a beat has one of {PIXELS_PER_CLOCK} pixels, not {self.pixels_per_clock}")
+        if self.square is not None and (
+            not 2 <= self.square <= MAX_SQUARE or self.square % self.pixels_per_clock
+        ):
+            raise ValueError(f"no squares of {self.square} pixels with {self.pixels_per_clock} in a beat")
 
     @property
     def has_edges(self) -> bool:
@@ -133,6 +143,8 @@ class Beats:
         starts: which are the first of a frame, bool ``[beats]``.
         ends: which are the last of a line, bool ``[beats]``.
         height: lines of the highest frame.
+        squares: the majorities that have to come out beside them, uint8 ``[rows, columns]`` for each frame;
+            empty of a core without squares.
     """
 
     pixels: NDArray[np.uint32]
@@ -140,6 +152,7 @@ class Beats:
     starts: NDArray[np.bool_]
     ends: NDArray[np.bool_]
     height: int
+    squares: tuple[NDArray[np.uint8], ...] = ()
 
     def __len__(self) -> int:
         return len(self.pixels)
@@ -152,14 +165,23 @@ class Beats:
         """TDATA of each beat that comes out."""
         return _joined(self.answers, ANSWER_BITS)
 
+    def voted(self) -> list[tuple[int, bool, bool]]:
+        """Of each beat of squares the class, whether it is the first of a frame and the last of a row."""
+        return [
+            (int(majority), row == column == 0, column == squares.shape[1] - 1)
+            for squares in self.squares
+            for (row, column), majority in np.ndenumerate(squares)
+        ]
+
     @classmethod
     def of(
         cls,
         pixels: Sequence[NDArray[np.uint32]],
         answers: Sequence[NDArray[np.uint8]],
         pixels_per_clock: int = 1,
+        squares: Sequence[NDArray[np.uint8]] = (),
     ) -> Self:
-        """The beats of frames of whole beats, whose words are ``[height, width]`` each."""
+        """The beats of frames of whole beats, whose words are ``[height, width]`` each, and of squares."""
         starts, ends = [], []
         for frame in pixels:
             start, end = np.zeros((2, len(frame), frame.shape[1] // pixels_per_clock), dtype=np.bool_)
@@ -173,6 +195,7 @@ class Beats:
             np.concatenate(starts),
             np.concatenate(ends),
             max(len(frame) for frame in pixels),
+            tuple(squares),
         )
 
 

@@ -61,6 +61,7 @@ def run_stream(
     sources: Sequence[Path],
     simulator: CompiledSimulator,
     *,
+    has_height: bool,
     timeout: float = 600.0,
 ) -> float:
     """Send frames through emitted Verilog, as `simulate_stream` does, in a compiled simulator.
@@ -71,6 +72,7 @@ def run_stream(
         module: the core's module.
         sources: its Verilog files.
         simulator: who simulates.
+        has_height: whether the core counts lines.
         timeout: seconds for compiling and for running, each.
 
     Returns:
@@ -87,8 +89,8 @@ def run_stream(
         text = stream_testbench(
             name=module,
             video=video,
-            count=len(beats),
-            height=beats.height,
+            beats=beats,
+            has_height=has_height,
             vectors_file="beats.hex",
             sources=[source.name for source in sources],
         )
@@ -107,6 +109,7 @@ def _bench(core: VideoCore, beats: Beats, progress: Progress | None) -> Any:
     marks = beats.starts.tolist(), beats.ends.tolist()
     sent = list(zip(beats.sent(core.video.pixel_bits), *marks, strict=True))
     wanted = list(zip(beats.expected(), *marks, strict=True))
+    votes = beats.voted()
 
     async def bench(ctx: Any) -> None:
         ctx.set(core.aresetn, 0)
@@ -114,9 +117,9 @@ def _bench(core: VideoCore, beats: Beats, progress: Progress | None) -> Any:
             ctx.set(core.height, beats.height % (1 << HEIGHT_BITS))
         await ctx.tick()
         ctx.set(core.aresetn, 1)
-        sending = received = idle = 0
+        sending = received = voted = idle = 0
         offered = False
-        while received < len(wanted):
+        while received < len(wanted) or voted < len(votes):
             if not offered and sending < len(sent) and draw.random() >= _PAUSES:
                 pixel, start, end = sent[sending]
                 ctx.set(core.s_axis_video_tdata, pixel)
@@ -142,6 +145,23 @@ def _bench(core: VideoCore, beats: Beats, progress: Progress | None) -> Any:
                 received += 1
                 if progress and (received % _REPORT_EVERY == 0 or received == len(wanted)):
                     progress(received, len(wanted))
+            if core.squares:
+                counts = draw.random() >= _PAUSES
+                ctx.set(core.m_axis_squares_tready, counts)
+                if counts and ctx.get(core.m_axis_squares_tvalid):
+                    given = True
+                    square = (
+                        ctx.get(core.m_axis_squares_tdata),
+                        bool(ctx.get(core.m_axis_squares_tuser)),
+                        bool(ctx.get(core.m_axis_squares_tlast)),
+                    )
+                    if votes[voted : voted + 1] != [square]:
+                        raise CheckError(
+                            f"the video core differs from the vote at square {voted}",
+                            value=f"TDATA, TUSER, TLAST are {square}, "
+                            f"expected {votes[voted] if voted < len(votes) else 'none'}",
+                        )
+                    voted += 1
             if taken:
                 sending += 1
                 offered = False

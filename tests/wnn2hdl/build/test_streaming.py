@@ -1,5 +1,6 @@
 """Video cores: compiled, checked, and a picture through them."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,18 +8,19 @@ import pytest
 
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.design import Mode
+from wnn2hdl.build.emission import video_part
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.build.playback import play
 from wnn2hdl.build.streaming import framed_answers, sample_frames
 from wnn2hdl.build.verification import open_build, verify_build
-from wnn2hdl.elaborate import video_core
 from wnn2hdl.emit import stream_testbench, stream_vectors
 from wnn2hdl.errors import CheckError, InputError, ToolError
 from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import model_classifier
+from wnn2hdl.evaluation.squares import vote
 from wnn2hdl.images import read_rgb, write_png
 from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, VideoFormat, WisardModel, window_codes
-from wnn2hdl.ir.video import Beats
+from wnn2hdl.ir.video import Answer, Beats
 from wnn2hdl.ir.window import framed_window_codes
 from wnn2hdl.tools import run_icarus
 from wnn2hdl.verify.stream import run_stream, simulate_stream
@@ -112,7 +114,7 @@ def test_a_wrong_answer_is_found_in_icarus(video: Path) -> None:
     beats = sample_frames(design)
     wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
     with pytest.raises(CheckError, match="icarus disagrees"):
-        run_stream(wrong, design.video, design.module("video"), files.simulated, "icarus")
+        run_stream(wrong, design.video, design.module("video"), files.simulated, "icarus", has_height=True)
 
 
 def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
@@ -121,10 +123,10 @@ def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
     beats = sample_frames(design)
     wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
     with pytest.raises(CheckError, match="at beat 0"):
-        simulate_stream(video_core(design.top, design.video, None, style=design.style), wrong)
+        simulate_stream(video_part(design), wrong)
     endless = Beats(beats.pixels, beats.answers, beats.starts, beats.ends, beats.height + 1)
     with pytest.raises(CheckError, match="stops after"):
-        simulate_stream(video_core(design.top, design.video, None, style=design.style), endless)
+        simulate_stream(video_part(design), endless)
 
 
 def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
@@ -141,7 +143,9 @@ def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
     beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)])
     video = VideoFormat(answer="class")
     assert stream_vectors(beats, video) == "280abcdef\n101000001\n"
-    text = stream_testbench(name="x", video=video, count=2, height=1, vectors_file="x.hex", sources=["x.v"])
+    text = stream_testbench(
+        name="x", video=video, beats=beats, has_height=False, vectors_file="x.hex", sources=["x.v"]
+    )
     assert "reg [33:0] vectors [0:1];" in text
     assert "height" not in text
     video = VideoFormat(answer="class", pixels_per_clock=2, format="mono")
@@ -190,6 +194,39 @@ def test_grey_pixels_need_grey_imagery_for_a_care_set(model: WisardModel, tmp_pa
     design = plan(model, "mine", options, silent).design
     with pytest.raises(InputError, match="no grey pixel"):
         sample_frames(design)
+
+
+@pytest.mark.simulator
+@pytest.mark.parametrize("answer", ["class", "both"])
+def test_squares_of_a_picture_are_those_of_the_software(
+    neighbours: WisardModel, imagery: Path, tmp_path: Path, answer: Answer
+) -> None:
+    options = CompileOptions(target="video", max_width=64, square=20, answer=answer, pixels_per_clock=2)
+    build = compile_model(neighbours, tmp_path / "squares", options, silent)
+    assert build.failure is None
+    picture = tmp_path / "odd.png"
+    rgb = read_rgb(imagery / "7.png")[:57, :62]
+    write_png(picture, rgb)
+    result = play(tmp_path / "squares", picture, "icarus", silent)
+    classes = model_classifier(neighbours).classify(with_halo(rgb, 2))
+    voted = vote(classes, None, side=20, share=1.0, seed=0, count=2)[::20, ::20]
+    assert result.squares is not None
+    assert result.squares.shape == (3, 4)
+    assert np.array_equal(result.squares, voted)
+    assert 0 < voted.mean() < 1
+    design, files, _ = open_build(tmp_path / "squares")
+    frames = sample_frames(design)
+    wrong = replace(frames, squares=(*frames.squares[:-1], frames.squares[-1] ^ np.uint8(1)))
+    with pytest.raises(CheckError, match="vote at square"):
+        simulate_stream(video_part(design), wrong)
+    assert design.video is not None
+    with pytest.raises(CheckError, match=r"icarus disagrees: .*square"):
+        run_stream(wrong, design.video, design.module("video"), files.simulated, "icarus", has_height=True)
+
+
+def test_squares_are_as_wide_as_whole_beats(model: WisardModel) -> None:
+    with pytest.raises(InputError, match="whole beats: --square 5 --pixels-per-clock 2"):
+        plan(model, "mine", CompileOptions(target="video", square=5, pixels_per_clock=2), silent)
 
 
 @pytest.fixture(scope="module")
