@@ -28,7 +28,13 @@ from wnn2hdl.encode.thermometer import whole_words
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.markdown import head, row
-from wnn2hdl.training.gradient import Architecture, Recipe, Trained, enough_epochs, train_network, usual_heat
+from wnn2hdl.training.gradient import (
+    Architecture,
+    Trained,
+    train_network,
+    usual_made_up,
+    usual_recipe,
+)
 from wnn2hdl.training.gradient.samples import split
 
 TEST_SHARE = 1 / 3
@@ -68,9 +74,9 @@ ROWS = {
     "shuttle": Row("shuttle", 99.9, 59, "BTHOWeN: 99.9, 593 LUTs"),
     "vowel": Row("vowel", 90.0, 155, "BTHOWeN: 90.0, 1,559 LUTs"),
     "vehicle": Row("vehicle", 76.2, 178, "BTHOWeN: 76.2, 1,781 LUTs"),
-    "wine": Row("wine", 98.3, 58, "BTHOWeN: 98.3, 585 LUTs"),
+    "wine": Row("wine", 98.3, 58, "BTHOWeN: 98.3, 585 LUTs", 4),
     "ecoli": Row("ecoli", 87.5, 176, "BTHOWeN: 87.5, 353 LUTs"),
-    "iris": Row("iris", 98.0, 28, "BTHOWeN: 98.0, 57 LUTs"),
+    "iris": Row("iris", 98.0, 28, "BTHOWeN: 98.0, 57 LUTs", 15),
 }
 
 
@@ -133,16 +139,16 @@ def _part(rows: FeatureTable, chosen: NDArray[np.int64]) -> FeatureTable:
 
 def train(case: Case, published: Row, seed: int) -> Trained:
     """A network within the row's LUTs."""
+    made_up = usual_made_up(len(case.labels), pictures=case.grid is not None)
     architecture = Architecture(
         case.words,
         max_luts=published.luts,
         levels=published.levels,
         grid=case.grid,
         distortions=published.distortions,
+        made_up=made_up,
     )
-    count = len(case.labels)
-    epochs = published.epochs or enough_epochs(count)
-    recipe = Recipe(epochs, heat=usual_heat(count), seed=seed)
+    recipe = usual_recipe(len(case.labels) + made_up, epochs=published.epochs, seed=seed)
     return train_network(case.features, case.labels, case.classes, architecture, recipe, lambda *_: None)
 
 

@@ -106,7 +106,13 @@ def train_luts_on_table(
 def luts_sentence(summary: dict[str, Any]) -> str:
     """What `train_luts_on_table` found, for people."""
     validated = "no row was kept for validation"
-    if summary["validation"] is not None:
+    if "teacher" in summary:
+        validated = (
+            f"{summary['made_up_rows']} made up\ntaught by {summary['teacher']}, accuracy "
+            f"{summary['teacher_accuracy']:.4f} in cross-validation, with which it agrees on "
+            f"{summary['validation']:.4f} of the rows made up for validation"
+        )
+    elif summary["validation"] is not None:
         validated = f"accuracy {summary['validation']:.4f} on rows kept for validation"
     return (
         f"{summary['model']}: {len(summary['classes'])} classes, {summary['luts']} LUTs in all\n"

@@ -10,7 +10,8 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.training.gradient.network import Architecture, train_network
-from wnn2hdl.training.gradient.training import Recipe, enough_epochs, usual_heat
+from wnn2hdl.training.gradient.teacher import usual_made_up
+from wnn2hdl.training.gradient.training import usual_recipe
 
 
 class LutNetworkClassifier(ClassifierMixin, BaseEstimator):
@@ -26,16 +27,20 @@ class LutNetworkClassifier(ClassifierMixin, BaseEstimator):
         levels: thresholds for each feature.
         grid: rows and columns of the picture whose pixels are the features, row by row; None for no picture.
         distortions: how often each picture is distorted for training; needs a grid.
-        epochs: passes over the training samples; None for `enough_epochs`.
+        made_up: rows that are made up between the samples and labelled by a teacher; 0 for none, None for
+            `usual_made_up`.
+        epochs: passes over the training samples, made-up rows included; None for `enough_epochs`.
         heat: what votes are divided by in training, in units of the square root of the nodes for each class;
             None for `usual_heat`.
-        validation: share of the samples that is kept for validation.
+        validation: share of the samples, or of the made-up rows, that is kept for validation.
         random_state: seed of everything that is random.
 
     Attributes:
         classes_: the labels, ascending.
         model_: the trained `LutGroupModel`; save it with ``model_.save(path)``, and compile it.
-        validation_: accuracy on the samples kept for validation; None if none were kept.
+        validation_: accuracy on the samples kept for validation, or how often the network agrees with its
+            teacher on made-up rows; None if none were kept.
+        teacher_: the `Teacher` that labelled made-up rows; None for none.
         luts_: LUTs of the whole network as counted; None without `max_luts`.
     """
 
@@ -48,6 +53,7 @@ class LutNetworkClassifier(ClassifierMixin, BaseEstimator):
         levels: int = 8,
         grid: tuple[int, int] | None = None,
         distortions: int = 0,
+        made_up: int | None = None,
         epochs: int | None = None,
         heat: float | None = None,
         validation: float = 0.1,
@@ -59,6 +65,7 @@ class LutNetworkClassifier(ClassifierMixin, BaseEstimator):
         self.levels = levels
         self.grid = grid
         self.distortions = distortions
+        self.made_up = made_up
         self.epochs = epochs
         self.heat = heat
         self.validation = validation
@@ -76,6 +83,9 @@ class LutNetworkClassifier(ClassifierMixin, BaseEstimator):
         self.classes_, owners = np.unique(labels, return_inverse=True)
         if len(self.classes_) < 2:
             raise ValueError(f"there is one class only, {self.classes_.tolist()}; at least two are needed")
+        rows = self.made_up
+        if rows is None:
+            rows = usual_made_up(len(owners), pictures=self.grid is not None)
         architecture = Architecture(
             words=FixedPoint.parse(self.words),
             nodes=self.nodes,
@@ -83,16 +93,16 @@ class LutNetworkClassifier(ClassifierMixin, BaseEstimator):
             levels=self.levels,
             grid=self.grid,
             distortions=self.distortions,
+            made_up=rows,
             validation=self.validation,
         )
-        epochs = enough_epochs(len(owners)) if self.epochs is None else self.epochs
-        heat = usual_heat(len(owners)) if self.heat is None else self.heat
-        recipe = Recipe(epochs, heat=heat, seed=self.random_state)
+        recipe = usual_recipe(len(owners) + rows, epochs=self.epochs, heat=self.heat, seed=self.random_state)
         names = tuple(str(label) for label in self.classes_)
         trained = train_network(features, owners, names, architecture, recipe, lambda *_: None)
         self.model_ = trained.model
         self.validation_ = trained.validation
         self.luts_ = trained.luts
+        self.teacher_ = trained.teacher
         return self
 
     def decision_function(self, X: ArrayLike) -> NDArray[np.int64]:

@@ -21,6 +21,7 @@ from wnn2hdl.training.gradient.layer import VotingLayer
 from wnn2hdl.training.gradient.loss import MAX_BATCH
 from wnn2hdl.training.gradient.pictures import distorted
 from wnn2hdl.training.gradient.samples import Samples, split
+from wnn2hdl.training.gradient.teacher import Teacher, choose_teacher, made_up
 from wnn2hdl.training.gradient.training import Recipe, Training
 
 SAVE_BATCHES = 2000
@@ -40,7 +41,10 @@ class Architecture:
         grid: rows and columns of the picture whose pixels are the features, row by row; None if they are no
             picture. Nodes may then also read whether any of 2x2 pixels is bright.
         distortions: how often each picture is distorted for training; needs a grid.
-        validation: share of the samples that is kept for validation; 0 to train on all, to the end.
+        made_up: rows that are made up between the samples and labelled by a teacher, see
+            `wnn2hdl.training.gradient.teacher`; 0 for no teacher.
+        validation: share of the samples, or of the rows that are made up, that is kept for validation; 0 to
+            train on all, to the end.
     """
 
     words: FixedPoint
@@ -49,6 +53,7 @@ class Architecture:
     levels: int = 8
     grid: tuple[int, int] | None = None
     distortions: int = 0
+    made_up: int = 0
     validation: float = 0.1
 
 
@@ -58,7 +63,9 @@ class Trained:
 
     Attributes:
         model: the network.
-        validation: its accuracy on the samples kept for validation; None if there were none.
+        validation: its accuracy on the samples kept for validation, or how often it agrees with its teacher
+            on made-up rows kept for that; None if there were none.
+        teacher: which had been trained on all samples; None for none.
         epochs: that were trained.
         nodes: for each class.
         luts: of the whole network, as counted; None without a budget.
@@ -69,6 +76,7 @@ class Trained:
     epochs: int
     nodes: int
     luts: int | None
+    teacher: Teacher | None = None
 
 
 def train_network(
@@ -98,10 +106,16 @@ def train_network(
         InputError: the features cannot be read as said, a class has no sample, or nothing fits the budget.
         ToolError: Yosys is missing or failed; it counts the LUTs of a budget.
     """
+    identity = _identity(features, labels, architecture, recipe)
+    teacher = None
+    if architecture.made_up:
+        _require_all(labels, classes)
+        teacher = choose_teacher(features, labels, recipe.seed)
+        rows = made_up(features, architecture.words, architecture.made_up, recipe.seed)
+        features = np.concatenate([features, rows])
+        labels = np.concatenate([labels, teacher.classifier.predict(rows)])
     chosen, kept = split(labels, architecture.validation, recipe.seed)
-    missing = sorted(set(range(len(classes))) - set(labels[chosen].tolist()))
-    if missing:
-        raise InputError("a class has no sample to train on", value=classes[missing[0]], hint="add some")
+    _require_all(labels[chosen], classes)
     inputs = choose_inputs(features[chosen], architecture.words, architecture.levels, architecture.grid)
     samples = Samples(_copies(features[chosen], inputs, architecture, recipe), labels[chosen], recipe.seed)
     validation = inputs.rows(features[kept]), labels[kept]
@@ -109,11 +123,7 @@ def train_network(
     nodes = architecture.nodes if budget is None else affordable_nodes(budget.max_luts, len(classes))
 
     training = Training(recipe, samples, inputs.luts, len(classes), nodes)
-    saved = (
-        None
-        if checkpoint is None
-        else Checkpoint(checkpoint, _identity(features, labels, architecture, recipe))
-    )
+    saved = None if checkpoint is None else Checkpoint(checkpoint, identity)
     if saved is not None and (arrays := saved.read()) is not None:
         training.restore(arrays)
     save_epochs = max(1, SAVE_BATCHES * MAX_BATCH // len(samples))
@@ -137,10 +147,17 @@ def train_network(
         training.epoch,
         layer.nodes_per_class,
         None if budget is None else budget.luts(layer),
+        teacher,
     )
     if saved is not None:
         saved.remove()
     return trained
+
+
+def _require_all(labels: NDArray[np.int64], classes: tuple[str, ...]) -> None:
+    missing = sorted(set(range(len(classes))) - set(labels.tolist()))
+    if missing:
+        raise InputError("a class has no sample to train on", value=classes[missing[0]], hint="add some")
 
 
 def _fitted(training: Training, budget: Budget | None) -> VotingLayer:

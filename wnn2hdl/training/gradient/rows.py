@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.encode import whole_words
@@ -9,7 +10,8 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir.features import FixedPoint
 from wnn2hdl.progress import Progress
 from wnn2hdl.training.gradient.network import Architecture, Trained, train_network
-from wnn2hdl.training.gradient.training import Recipe, enough_epochs, usual_heat
+from wnn2hdl.training.gradient.teacher import usual_made_up
+from wnn2hdl.training.gradient.training import usual_recipe
 
 
 def train_rows(
@@ -27,12 +29,14 @@ def train_rows(
 ) -> Trained:
     """Train on rows; the model's ``origin`` says how.
 
+    Few rows that are no pictures teach a teacher first, which labels rows made up between them.
+
     Args:
         rows: features and classes.
         max_luts: of the whole compiled network.
         levels: thresholds for each feature.
         words: format of the features in hardware; None for the narrowest one, if all features are whole.
-        epochs: passes over the rows; None for `enough_epochs`.
+        epochs: passes over the rows, made-up ones included; None for `enough_epochs`.
         distort: how often each picture is distorted.
         seed: of everything that is random.
         progress: reports each epoch.
@@ -58,16 +62,24 @@ def train_rows(
             value=source,
             hint="state a format, as in --input Q3.12 or TableOptions(words=FixedPoint.parse('Q3.12'))",
         )
-    architecture = Architecture(form, max_luts=max_luts, levels=levels, grid=rows.grid, distortions=distort)
-    count = len(rows.labels)
-    recipe = Recipe(enough_epochs(count) if epochs is None else epochs, heat=usual_heat(count), seed=seed)
+    made_up = usual_made_up(len(rows.labels), pictures=rows.grid is not None)
+    architecture = Architecture(
+        form, max_luts=max_luts, levels=levels, grid=rows.grid, distortions=distort, made_up=made_up
+    )
+    recipe = usual_recipe(len(rows.labels) + made_up, epochs=epochs, seed=seed)
     trained = train_network(rows.features, owners, classes, architecture, recipe, progress, checkpoint)
-    figures = {
+    figures: dict[str, Any] = {
         "luts": trained.luts,
         "validation": trained.validation,
         "epochs": trained.epochs,
         "nodes_per_class": trained.nodes,
         "seed": seed,
-        "rows": count,
+        "rows": len(rows.labels),
     }
+    if trained.teacher is not None:
+        figures |= {
+            "teacher": trained.teacher.name,
+            "teacher_accuracy": trained.teacher.accuracy,
+            "made_up_rows": made_up,
+        }
     return replace(trained, model=replace(trained.model, origin={"training": figures}))

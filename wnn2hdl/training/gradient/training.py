@@ -19,7 +19,7 @@ from wnn2hdl.training.gradient.loss import (
 )
 from wnn2hdl.training.gradient.samples import Batch, Samples
 
-MIN_BATCHES = 4000
+MIN_BATCHES = 10_000
 """Batches of a training of `enough_epochs`, at least."""
 
 
@@ -74,6 +74,24 @@ def enough_epochs(samples: int) -> int:
 def usual_heat(samples: int) -> float:
     """The `Recipe.heat` that suits so many samples: few want softer votes."""
     return min(MOST_HEAT, Recipe.heat * max(1.0, float(np.sqrt(MANY_SAMPLES / samples))))
+
+
+def usual_recipe(
+    samples: int, *, epochs: int | None = None, heat: float | None = None, seed: int = 0
+) -> Recipe:
+    """The recipe for so many samples, made-up rows included.
+
+    Args:
+        samples: how many.
+        epochs: None for `enough_epochs`.
+        heat: None for `usual_heat`.
+        seed: of everything random.
+    """
+    return Recipe(
+        enough_epochs(samples) if epochs is None else epochs,
+        heat=usual_heat(samples) if heat is None else heat,
+        seed=seed,
+    )
 
 
 class Training:

@@ -90,6 +90,6 @@ def test_a_saved_training_goes_on_as_it_was() -> None:
 
 
 def test_few_samples_are_shown_more_often_and_with_softer_votes() -> None:
-    assert [enough_epochs(samples) for samples in (100, 16_000, 60_000)] == [4000, 64, 40]
+    assert [enough_epochs(samples) for samples in (100, 16_000, 60_000)] == [10_000, 159, 43]
     heats = [usual_heat(samples) for samples in (100, 5_000, 20_000, 60_000)]
     assert np.allclose(heats, [1, 0.66, 0.33, 0.33])
