@@ -36,8 +36,8 @@ def test_test_rows_are_others_than_those_trained_on_and_scaled_alike(data: Path)
 def test_a_row_is_trained_counted_and_judged(
     data: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(published.ROWS, "iris", published.Row("iris", 90.0, 40, "nobody: 90.0", 3, 100))
-    monkeypatch.setitem(published.ROWS, "wine", published.Row("iris", 90.0, 2, "nobody: 90.0", 3, 100))
+    monkeypatch.setitem(published.ROWS, "iris", published.Row("iris", 90.0, 40, "nobody: 90.0", 3, 6))
+    monkeypatch.setitem(published.ROWS, "wine", published.Row("iris", 90.0, 2, "nobody: 90.0", 3, 6))
     words = ["published.py", str(data), "--rows", "iris", "wine", "--seeds", "1"]
     monkeypatch.setattr(sys, "argv", words)
     published.main()

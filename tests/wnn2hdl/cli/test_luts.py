@@ -48,6 +48,22 @@ def test_a_network_fits_its_budget_and_is_measured_and_can_be_made_again(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["again.json", "m.json", "pictures.npz"]
 
 
+@pytest.mark.slow
+def test_few_rows_are_taught_and_the_teacher_is_named(run: Run, tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    rows = rng.integers(0, 256, (80, 3))
+    lines = [f"{a},{b},{c},{'yes' if a + b > 255 else 'no'}\n" for a, b, c in rows]
+    (tmp_path / "t.csv").write_text("a,b,c,answer\n" + "".join(lines))
+    words = ("train", "--table", tmp_path / "t.csv", "--label", "answer", "--max-luts", 20, "--epochs", 4)
+    said = run(*words, "-o", tmp_path / "m.json").stdout
+    assert "4 epochs on 80 rows, 20000 made up" in said
+    assert "\ntaught by " in said
+    training = json.loads((tmp_path / "m.json").read_text())["origin"]["training"]
+    assert training["teacher"] in said
+    assert training["teacher_accuracy"] > 0.9
+    assert training["validation"] > 0.8
+
+
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [

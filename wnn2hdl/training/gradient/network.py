@@ -107,6 +107,8 @@ def train_network(
         ToolError: Yosys is missing or failed; it counts the LUTs of a budget.
     """
     identity = _identity(features, labels, architecture, recipe)
+    most = architecture.max_luts
+    nodes = architecture.nodes if most is None else affordable_nodes(most, len(classes))
     teacher = None
     if architecture.made_up:
         _require_all(labels, classes)
@@ -119,8 +121,7 @@ def train_network(
     inputs = choose_inputs(features[chosen], architecture.words, architecture.levels, architecture.grid)
     samples = Samples(_copies(features[chosen], inputs, architecture, recipe), labels[chosen], recipe.seed)
     validation = inputs.rows(features[kept]), labels[kept]
-    budget = None if architecture.max_luts is None else Budget(architecture.max_luts, inputs, classes)
-    nodes = architecture.nodes if budget is None else affordable_nodes(budget.max_luts, len(classes))
+    budget = None if most is None else Budget(most, inputs, classes)
 
     training = Training(recipe, samples, inputs.luts, len(classes), nodes)
     saved = None if checkpoint is None else Checkpoint(checkpoint, identity)

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis, QuadraticDiscriminantAnalysis
-from sklearn.exceptions import ConvergenceWarning
 from sklearn.linear_model import LogisticRegression
 from sklearn.neighbors import NearestNeighbors
 from sklearn.pipeline import make_pipeline
@@ -103,9 +102,8 @@ def made_up(features: NDArray[np.float64], words: FixedPoint, count: int, seed: 
 
 def _fitted(make: Callable[[], Any], features: NDArray[np.float64], labels: NDArray[np.int64]) -> Any:
     with warnings.catch_warnings():
-        # Collinear features and slow convergence make a poor teacher, which cross-validation then shows.
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        warnings.simplefilter("ignore", UserWarning)
+        # Collinear features, equal means and slow convergence make a poor teacher, as cross-validation shows.
+        warnings.simplefilter("ignore")
         return make_pipeline(StandardScaler(), make()).fit(features, labels)
 
 
