@@ -19,6 +19,7 @@ from wnn2hdl.build.reporting import read_report
 from wnn2hdl.build.verification import verify_build
 from wnn2hdl.ir.models import AnyModel, load_model
 from wnn2hdl.progress import Progress
+from wnn2hdl.report.baseline import shown_parts
 
 UNNAMED = "circuit"
 """The folder's name, and so that of the modules, if no folder is named."""
@@ -77,7 +78,8 @@ class Build(Shown):
         """See `Shown.facts`."""
         proof = self.report["proof"]
         found = {"proof": f"{proof['status']}, {proof['method']}"}
-        found |= {f"LUTs of {part}": str(luts) for part, luts in self.luts.items()}
+        parts = shown_parts(self.report["parts"])
+        found |= {f"LUTs of {part}": str(figures["luts"]) for part, figures in parts.items()}
         if self.accuracy is not None:
             found["accuracy"] = f"{self.accuracy:.2%}"
         return found | {"folder": str(self.folder)}

@@ -55,6 +55,11 @@ class Model(Shown):
     model: AnyModel
 
     @property
+    def classes(self) -> tuple[str, ...]:
+        """Class names; none of a network of gates."""
+        return () if isinstance(self.model, LogicModel) else self.model.classes
+
+    @property
     def title(self) -> str:
         """See `Shown.title`."""
         return f"Model of kind {self.model.kind}"
@@ -65,8 +70,8 @@ class Model(Shown):
         model = self.model
         width = model.width if isinstance(model, LogicModel) else model.encoder.width
         found = {"input bits": str(width)}
-        if not isinstance(model, LogicModel):
-            found["classes"] = ", ".join(model.classes[:10]) + (" …" if len(model.classes) > 10 else "")
+        if self.classes:
+            found["classes"] = ", ".join(self.classes[:10]) + (" …" if len(self.classes) > 10 else "")
         if isinstance(model, WisardModel):
             found["RAMs"] = f"{model.rams} of {model.address_bits} address bits for each class"
             found["bleaching threshold"] = str(model.bleaching)

@@ -12,7 +12,7 @@ from rich.progress import BarColumn, Progress, Task, TextColumn, TimeElapsedColu
 from rich.table import Table
 
 from wnn2hdl.cli.terminal import say
-from wnn2hdl.report.baseline import RIVALS
+from wnn2hdl.report.baseline import shown_parts
 from wnn2hdl.report.page import as_taken
 
 json_option = click.option(
@@ -85,11 +85,8 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
     columns["delay_ps"] = "delay ps"
     for heading in columns.values():
         table.add_column(heading, justify="right")
-    for part, figures in report["parts"].items():
-        # Rivals find edges, and most circuits do not.
-        compared = part not in RIVALS or "edge" in report["parts"]
-        if figures["luts"] is not None and compared:
-            table.add_row(part, *("n/a" if figures[key] is None else str(figures[key]) for key in columns))
+    for part, figures in shown_parts(report["parts"]).items():
+        table.add_row(part, *("n/a" if figures[key] is None else str(figures[key]) for key in columns))
     proof = report["proof"]
     earlier = f" (before: {', '.join(proof['before'])})" if proof.get("before") else ""
     lines = [printed(table)]

@@ -16,6 +16,19 @@ RIVALS = frozenset({"sobel"})
 """Parts that a build is compared with and that do not belong to it."""
 
 
+def shown_parts(parts: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
+    """The counted parts of a report that people are shown: rivals find edges, and most circuits do not.
+
+    Args:
+        parts: figures by part, as in ``report.json``.
+    """
+    return {
+        part: figures
+        for part, figures in parts.items()
+        if figures["luts"] is not None and (part not in RIVALS or "edge" in parts)
+    }
+
+
 @dataclass(frozen=True)
 class Recorded:
     """What a baseline holds of a build.

@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from collections import OrderedDict
 from collections.abc import Callable
 from contextlib import suppress
@@ -34,6 +36,8 @@ LUTS = [rng.normal(size=(3, 4)).astype(np.float32), rng.normal(size=(4, 4)).asty
 SECOND = np.array([[0, 1], [1, 2], [2, 0], [2, 2]], dtype=np.int32)
 # Saved transposed, as the quantiles of PyTorch are.
 THRESHOLDS = np.array([[0.25, 0.5], [1.0, 2.0]], dtype=np.float32).T
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "import_a_dwn.py"
 
 
 def state() -> Arrays:
@@ -200,6 +204,23 @@ def test_modules_that_contain_themselves_are_refused(
     model.__dict__.update(_modules={"0": model})
     with pytest.raises(InputError, match="contain one another too deeply"):
         read(Source(save_checkpoint(tmp_path / "a.pt", model)), ImportOptions())
+
+
+@pytest.mark.slow
+def test_the_example_imports_and_compiles_a_checkpoint(save_checkpoint: Save, tmp_path: Path) -> None:
+    checkpoint = save_checkpoint(tmp_path / "a.pt", dictionary())
+    np.savez(tmp_path / "vectors.npz", x_raw=FEATURES, pred=upstream(FEATURES))
+    done = subprocess.run(
+        [sys.executable, EXAMPLE, checkpoint, tmp_path / "vectors.npz", tmp_path / "output"],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "100.0% of the recorded answers are the model's" in done.stdout
+    # None of the thresholds is between two words.
+    assert "100.0% of them are the circuit's" in done.stdout
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=200)
