@@ -20,7 +20,7 @@ from wnn2hdl.emit import cells_model
 from wnn2hdl.errors import Wnn2hdlError
 from wnn2hdl.verify.compiled import run_compiled
 from wnn2hdl.verify.equivalence import Circuit, find_differences
-from wnn2hdl.verify.proof import held_in_care
+from wnn2hdl.verify.holding import held_in_care
 from wnn2hdl.verify.specification import Claim, Samples, Specification, value_bits
 
 _STATEMENT = re.compile(

@@ -29,7 +29,7 @@ from wnn2hdl.importers import import_model
 from wnn2hdl.importers.base import ImportOptions
 from wnn2hdl.ir import Thermometer
 from wnn2hdl.ir.care import Everything
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import AnyModel, LutGroupModel, LutLayer, TableSumModel, VotingModel
 from wnn2hdl.lower import structural
 from wnn2hdl.lower.targets import Ingredients, target_for

@@ -26,7 +26,7 @@ from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.dataset.tables import FeatureTable, read_table
 from wnn2hdl.encode.thermometer import whole_words
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.markdown import head, row
 from wnn2hdl.training.gradient import (
     Architecture,

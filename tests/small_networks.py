@@ -3,7 +3,7 @@
 import numpy as np
 
 from wnn2hdl.ir import FeatureEncoder, Thermometer, ThermometerBits
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import BloomWisardModel, LutGroupModel, LutLayer, SparseWisardModel
 
 WORDS = FixedPoint(6, 3)

@@ -11,7 +11,7 @@ from sklearn.utils.estimator_checks import parametrize_with_checks
 from wnn2hdl.encode import ThermometerEncoder, fit_thermometer, high_bits, parse_bits, whole_words
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import PIXEL_BIT_NAMES
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 
 tables = arrays(
     np.float64,

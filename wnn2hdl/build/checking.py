@@ -18,7 +18,8 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.synth import Job, Synthesis, synthesise_all
 from wnn2hdl.tools import in_parallel
 from wnn2hdl.verify.equivalence import Circuit
-from wnn2hdl.verify.proof import MODEL, Proof, Status, method, prove, prove_netlists, sides
+from wnn2hdl.verify.holding import sides
+from wnn2hdl.verify.proof import MODEL, Proof, Status, method, prove, prove_netlists
 from wnn2hdl.verify.specification import Specification
 
 _MANY = 1 << 16

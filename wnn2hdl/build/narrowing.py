@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import VectorClassifier
 from wnn2hdl.ir import Thermometer, WisardModel
-from wnn2hdl.ir.features import MAX_WORD_BITS, FixedPoint
+from wnn2hdl.ir.fixed_point import MAX_WORD_BITS, FixedPoint
 from wnn2hdl.ir.models import AnyModel, LutGroupModel, SparseWisardModel, VotingModel
 from wnn2hdl.ir.models.base import ZERO
 from wnn2hdl.ir.nodes import Table

@@ -21,7 +21,8 @@ from wnn2hdl.progress import Progress
 from wnn2hdl.synth import FABRICS, SEED, Fabric, Harnessed, Mapped, Placed, harness, map_to, place_and_route
 from wnn2hdl.tools import find_yosys
 from wnn2hdl.verify.equivalence import Circuit
-from wnn2hdl.verify.proof import prove, prove_netlists, sides
+from wnn2hdl.verify.holding import sides
+from wnn2hdl.verify.proof import prove, prove_netlists
 from wnn2hdl.verify.specify import care_sets
 
 _STEPS = 4

@@ -27,7 +27,8 @@ from wnn2hdl.ir import (
 from wnn2hdl.ir.care import CareSet, Codes
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.engine import EngineFormat, Shape
-from wnn2hdl.ir.features import FixedPoint, Thermometer
+from wnn2hdl.ir.features import Thermometer
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import AnyModel, LogicModel
 from wnn2hdl.ir.packing import packed_luts
 from wnn2hdl.ir.video import MAX_CLOCK, Answer

@@ -52,7 +52,7 @@ from wnn2hdl.files import held, make_folder
 from wnn2hdl.images import MaskFormat
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.ir.context import SIZES
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models.wisard import MAX_ADDRESS_BITS
 from wnn2hdl.raster import Reading

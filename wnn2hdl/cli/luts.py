@@ -9,7 +9,7 @@ import click
 from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.files import beside
 from wnn2hdl.ir import Thermometer
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.progress import Progress
 from wnn2hdl.training.gradient import train_rows

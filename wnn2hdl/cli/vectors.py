@@ -13,7 +13,7 @@ from wnn2hdl.dataset.tables import read_table
 from wnn2hdl.encode.thermometer import Spacing
 from wnn2hdl.evaluation.measures import CONFIDENCE, accuracy, wilson
 from wnn2hdl.ir import Thermometer, WisardModel
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models import SparseWisardModel
 from wnn2hdl.progress import Progress

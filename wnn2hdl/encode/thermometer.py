@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer
-from wnn2hdl.ir.features import MAX_WORD_BITS, FixedPoint
+from wnn2hdl.ir.fixed_point import MAX_WORD_BITS, FixedPoint
 
 Spacing = Literal["quantiles", "uniform", "gaussian"]
 """Where thresholds lie: parts of equal size by number of samples, by range, or by a normal distribution."""

@@ -5,7 +5,8 @@ from wnn2hdl.ir.context import Context
 from wnn2hdl.ir.cover import Cover, Cube, Term, irredundant_cover
 from wnn2hdl.ir.encoder import Encoder, Neighbourhood, PictureEncoder, Tap
 from wnn2hdl.ir.equation import Equation, equation
-from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, ThermometerBits, Words
+from wnn2hdl.ir.features import FeatureEncoder, Thermometer, ThermometerBits, Words
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.model import WisardModel, picture_encoder, pixel_encoder
 from wnn2hdl.ir.network import (
     CONSTANTS,

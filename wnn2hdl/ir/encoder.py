@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.ir.codes import MAX_TABLE_INPUTS
 from wnn2hdl.ir.context import Context
-from wnn2hdl.ir.features import FeatureEncoder, FixedPoint, Thermometer, ThermometerBits, Words
+from wnn2hdl.ir.features import FeatureEncoder, Thermometer, ThermometerBits, Words
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.pixel_bits import BitSelect
 from wnn2hdl.ir.relational import PixelEncoder, Relational
 from wnn2hdl.ir.tables import pack_contents, unpack_contents

@@ -9,7 +9,8 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, TruthTable
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.encoder import Encoder
-from wnn2hdl.ir.features import FixedPoint, ThermometerBits, Words
+from wnn2hdl.ir.features import ThermometerBits, Words
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.nodes import Table
 from wnn2hdl.ir.wires import Port, Slice
 from wnn2hdl.lower.thresholds import compare

@@ -11,7 +11,7 @@ from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.encode import Spacing, fit_thermometer, whole_words
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Thermometer, WisardModel
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import SparseWisardModel
 from wnn2hdl.progress import Progress
 from wnn2hdl.wisard import WisardClassifier, draw_mapping

@@ -1,24 +1,6 @@
 """The formal proof that emitted Verilog is the model, and that the mapped netlist is the emitted Verilog.
 
-Why the proof is sound. Both sides of a comparison stand in the same wrapper, whose pixels pass through
-``care_pixel``: a function *h* with *h(p) = p* on each cared-for pixel, and whose every value is a cared-for
-pixel. Circuit and reference agree on *h(p)* for all *p* exactly if they agree on all cared-for pixels. So
-"for all inputs of the wrapper" is "for all cared-for inputs of the circuit", and nothing weaker. Inside the
-wrapper the nine pixel circuits equal their references on every input, which lets the checker merge them one
-by one; with the care set as a side condition of the miter they would not, and nothing could be merged. Where
-every code is cared for, *h* is the identity.
-
-The edge bit of a side is masked by ``care_window`` of that side's own bits. If the proof succeeds, the bits
-of both sides are equal, hence so are the masks, and the edge bits are equal wherever the window is cared for.
-
-A neighbourhood's window is not held: the class bits of both sides are masked by ``care_neighbourhood`` of it.
-The mask is one function of the inputs on both sides, so masked outputs are equal for all windows exactly if
-the outputs are equal for the cared-for ones.
-
-A pipeline is in the wrapper with its registers, and is equal to the reference its latency later
-(`wnn2hdl.verify.equivalence`); a mask that reads an input passes as many registers as the pipeline has.
-
-The care set is not empty (`wnn2hdl.verify.specification.flags_of` refuses that), so no claim holds vacuously.
+`wnn2hdl.verify.holding` says why comparing circuits that are held in the care set proves a claim.
 
 A network is proved piece by piece (`wnn2hdl.verify.composition` says why that is sound), its sums by
 substitution (`wnn2hdl.verify.addition`). Where a piece is not what is claimed of it, the network may still be
@@ -34,12 +16,10 @@ from typing import Literal
 import numpy as np
 
 from wnn2hdl.errors import CheckError, ToolError
-from wnn2hdl.ir import PIXEL_BITS
 from wnn2hdl.ir.wires import word_values
 from wnn2hdl.verify.addition import is_sum_of_tables, is_wrong_on_samples
 from wnn2hdl.verify.composition import Composition, Piece, wrong_wire
 from wnn2hdl.verify.equivalence import (
-    CLOCK,
     UNDECIDED,
     Circuit,
     Difference,
@@ -47,6 +27,7 @@ from wnn2hdl.verify.equivalence import (
     find_differences,
 )
 from wnn2hdl.verify.graphs import difference_of_graphs, graph_of, graph_of_model
+from wnn2hdl.verify.holding import sides
 from wnn2hdl.verify.signals import Signals, read_signals
 from wnn2hdl.verify.specification import Claim, Samples, Specification, show, value_bits
 
@@ -69,7 +50,6 @@ _SECONDS = 600.0
 
 _CONFLICTS = 100_000
 _NODES = 200_000
-_HELD = "proof__held"
 
 
 @dataclass(frozen=True)
@@ -315,56 +295,6 @@ def _difference_of_graphs(left: Circuit, right: Circuit) -> Difference:
         return found
     bits = iter(found)
     return {port: sum(next(bits) << place for place in range(len(x))) for port, x in first.inputs.items()}
-
-
-def sides(specification: Specification, claim: Claim, circuit: Circuit) -> tuple[Circuit, Circuit]:
-    """What `prove` compares: a circuit and the reference of its claim, both held in the care set.
-
-    Of a gate network, whose reference is no Verilog, the digest of the model stands for the reference.
-    """
-    if claim.gates is not None:
-        return circuit, Circuit((claim.gates.digest(),), claim.module)
-    reference = Circuit((specification.reference,), claim.module)
-    return held_in_care(specification, claim, circuit), held_in_care(specification, claim, reference)
-
-
-def held_in_care(specification: Specification, claim: Claim, circuit: Circuit) -> Circuit:
-    """A circuit in the wrapper that holds its inputs inside the care set (see the top of this file)."""
-    clocked = bool(circuit.latency)
-    header = [f"input {CLOCK}"] if clocked else []
-    header += [f"input [{width - 1}:0] {port}" for port, width in claim.inputs.items()]
-    header += [f"output [{width - 1}:0] {port}" for port, width in claim.outputs.items()]
-    nets = {port: port for port in (*claim.inputs, *claim.outputs)}
-    lines = [f"module {_HELD}({', '.join(header)});"]
-    for port in claim.held:
-        nets[port] = f"held_{port}"
-        lines.append(f"  wire [{claim.inputs[port] - 1}:0] held_{port};")
-        for low in range(0, claim.inputs[port], PIXEL_BITS):
-            bits = f"[{low + PIXEL_BITS - 1}:{low}]"
-            lines.append(
-                f"  proof__care_pixel care_{port}_{low} (.free({port}{bits}), .rgb(held_{port}{bits}));"
-            )
-    if clocked:
-        nets[CLOCK] = CLOCK
-    for port, mask in claim.masks.items():
-        width = claim.outputs[port]
-        # What an input says about an output comes out as much later as the output.
-        delay = circuit.latency if mask.port in claim.inputs else 0
-        nets[port] = f"any_{port}"
-        lines += [
-            f"  wire [{width - 1}:0] any_{port};",
-            f"  wire cared_{port}_0;",
-            f"  {mask.module} care_{port} (.{mask.port}({mask.port}), .cared(cared_{port}_0));",
-            *(
-                f"  reg cared_{port}_{cycle + 1}; always @(posedge {CLOCK}) "
-                f"cared_{port}_{cycle + 1} <= cared_{port}_{cycle};"
-                for cycle in range(delay)
-            ),
-            f"  assign {port} = any_{port} & {{{width}{{cared_{port}_{delay}}}}};",
-        ]
-    connections = ", ".join(f".{port}({net})" for port, net in nets.items())
-    wrapper = "\n".join([*lines, f"  {circuit.top} circuit ({connections});", "endmodule", ""])
-    return Circuit((wrapper, specification.care, *circuit.sources), _HELD, circuit.latency)
 
 
 def _against_model(claim: Claim, circuit: Circuit, values: Mapping[str, int]) -> Counterexample:

@@ -15,7 +15,7 @@ from wnn2hdl.dataset.tables import FeatureTable, read_table
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import row_answers
 from wnn2hdl.ir import BitSelect, WisardModel
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel, load_model
 from wnn2hdl.report import report_markdown
 

@@ -13,7 +13,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import feature_answers
 from wnn2hdl.importers import ImportOptions, import_model
 from wnn2hdl.ir import Thermometer, WisardModel, Words
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel, LutLayer
 
 

@@ -16,7 +16,7 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.importers import ImportOptions, Source
 from wnn2hdl.importers.bthowen import read
 from wnn2hdl.ir import ThermometerBits
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import BloomWisardModel, LogicModel, LutGroupModel
 from wnn2hdl.training.bthowen import with_thresholds
 

@@ -9,7 +9,7 @@ from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.rows import row_confusion
 from wnn2hdl.ir import Thermometer, WisardModel
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import SparseWisardModel
 from wnn2hdl.training import tables
 from wnn2hdl.training.tables import TableOptions, cross_validate_table, train_table

@@ -8,7 +8,7 @@ from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.training.gradient.network import Architecture, train_network
 from wnn2hdl.training.gradient.teacher import usual_made_up
 from wnn2hdl.training.gradient.training import usual_recipe

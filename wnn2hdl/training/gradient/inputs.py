@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import LUT_INPUTS, Thermometer
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel
 from wnn2hdl.ir.models.luts import LutLayer
 from wnn2hdl.training.gradient.layer import VotingLayer

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import wnn2hdl
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel
 from wnn2hdl.progress import Progress
 from wnn2hdl.training.gradient.budget import Budget

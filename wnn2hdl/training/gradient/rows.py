@@ -7,7 +7,7 @@ from typing import Any
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.encode import whole_words
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.progress import Progress
 from wnn2hdl.training.gradient.network import Architecture, Trained, train_network
 from wnn2hdl.training.gradient.teacher import usual_made_up

@@ -8,7 +8,7 @@ import pytest
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel
 from wnn2hdl.training.gradient.cost import affordable_nodes, decision_luts, network_luts
 from wnn2hdl.training.gradient.inputs import InputBits, choose_inputs

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.training.gradient.inputs import choose_inputs
 from wnn2hdl.training.gradient.layer import VotingLayer
 

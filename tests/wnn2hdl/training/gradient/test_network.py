@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.training.gradient import Architecture, Recipe, Trained, network, train_network
 from wnn2hdl.training.gradient.cost import network_luts
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.training.gradient import Architecture, Recipe, train_network, usual_made_up
 from wnn2hdl.training.gradient.teacher import choose_teacher, made_up
 
