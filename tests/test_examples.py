@@ -10,7 +10,7 @@ import pytest
 
 from wnn2hdl.dataset.tables import FeatureTable
 from wnn2hdl.ir import Thermometer
-from wnn2hdl.ir.features import FixedPoint
+from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import LutGroupModel, LutLayer
 
 # The import of a DWN needs a checkpoint: it runs beside the tests of checkpoints.
