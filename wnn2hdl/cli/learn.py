@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from wnn2hdl.cli.learned import save_front, train_sentence, train_summary
+from wnn2hdl.cli.front import Candidate, save_front
+from wnn2hdl.cli.learned import train_sentence, train_summary
 from wnn2hdl.cli.luts import OPTIONS as LUT_NETWORK
 from wnn2hdl.cli.luts import (
     distort_option,
@@ -198,7 +199,8 @@ def train_command(
       wnn2hdl train --table data.csv --label COLUMN --levels 16 -o model.json
     """
     if table is not None and max_luts is not None:
-        refuse((*IMAGES, *OTHERS, *DISCRIMINATORS, *WISARD), "--max-luts trains no discriminators")
+        pictures = tuple(option for option in OTHERS if option != "--pareto")
+        refuse((*IMAGES, *pictures, *DISCRIMINATORS, *WISARD), "--max-luts trains no discriminators")
         network = partial(
             train_luts_on_table,
             table,
@@ -208,6 +210,7 @@ def train_command(
             words=words,
             epochs=epochs,
             distort=distort,
+            pareto=pareto,
             seed=seed,
         )
         _train_on_table(network, luts_sentence, output, as_json=as_json)
@@ -284,7 +287,13 @@ def train_command(
         model.save(output)
         summary = train_summary(model, output, len(dataset))
         if pareto:
-            summary["front"] = save_front(points, output, model.colours)
+            candidates = [
+                Candidate(
+                    point.luts, point.accuracy, point.method, replace(point.model, colours=model.colours)
+                )
+                for point in points
+            ]
+            summary["front"] = save_front(candidates, output)
     emit(summary, train_sentence(summary), as_json=as_json)
 
 

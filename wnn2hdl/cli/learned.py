@@ -1,20 +1,17 @@
-"""What `train` says of a model of pictures, and the front of models that it writes."""
+"""What `train` says of a model of pictures."""
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.table import Table
 
 from wnn2hdl.cli.output import printed
 from wnn2hdl.evaluation.light import brighter_figures, brighter_warning
 from wnn2hdl.ir import WisardModel, picture_encoder
 from wnn2hdl.ir.pixel_bits import PIXEL_BIT_NAMES
-from wnn2hdl.training.budget import LIGHT, NESTED, WITHIN, Point, pareto_front
+from wnn2hdl.training.budget import LIGHT, NESTED, WITHIN
 from wnn2hdl.training.discriminators import LEFT_OUT
 from wnn2hdl.training.promise import OTHERS
 
@@ -93,26 +90,3 @@ def _light_table(light: Mapping[str, Mapping[str, Any]]) -> str:
         shares = f"{figures['accuracy']:.2%}", f"{figures['worst_image']:.2%}"
         table.add_row(f"x{exposure}", *shares, f"{low:.2%} to {high:.2%}")
     return printed(table)
-
-
-def save_front(
-    points: tuple[Point, ...], output: Path, colours: NDArray[np.int64] | None
-) -> list[dict[str, Any]]:
-    """Write a model for each point of the front, and the plot, beside the best model."""
-    # Not at the top: other trainings need not wait for it.
-    from wnn2hdl.report.plots import plot_pareto
-
-    front = pareto_front(points)
-    rows = []
-    for point in front:
-        path = output.with_name(f"{output.stem}-{point.luts}luts.json")
-        replace(point.model, colours=colours).save(path)
-        rows.append(
-            {"luts": point.luts, "accuracy": point.accuracy, "method": point.method, "model": str(path)}
-        )
-    plot_pareto(
-        [(point.luts, point.accuracy, point.method) for point in points],
-        [(point.luts, point.accuracy, point.method) for point in front],
-        output.with_name(f"{output.stem}-pareto"),
-    )
-    return rows

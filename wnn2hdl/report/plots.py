@@ -66,14 +66,21 @@ def save_plot(figure: "Figure", path: Path) -> tuple[Path, Path]:
 
 @plot_style()
 def plot_pareto(
-    points: Sequence[tuple[int, float, str]], front: Sequence[tuple[int, float, str]], path: Path
+    points: Sequence[tuple[int, float, str]],
+    front: Sequence[tuple[int, float, str]],
+    path: Path,
+    *,
+    cost: str = "LUTs per pixel",
+    worth: str = "accuracy on unseen images",
 ) -> tuple[Path, Path]:
     """Accuracy against LUTs: all points grey, the front as a staircase with its methods' names.
 
     Args:
-        points: (LUTs per pixel, accuracy from 0 to 1, method) of every candidate.
+        points: (LUTs, accuracy from 0 to 1, method) of every candidate.
         front: those that no other beats, by rising LUTs.
         path: the picture without its suffix.
+        cost: what the LUTs are of.
+        worth: what the accuracy is of.
 
     Returns:
         The two files written, as by `save_plot`.
@@ -95,8 +102,8 @@ def plot_pareto(
     # Linear up to 1, since a classifier that is a single wire takes no LUT.
     axes.set_xscale("symlog", base=2, linthresh=1)
     axes.xaxis.set_major_formatter(ScalarFormatter())
-    axes.set_xlabel("LUTs per pixel")
-    axes.set_ylabel("accuracy on unseen images, %")
+    axes.set_xlabel(cost)
+    axes.set_ylabel(f"{worth}, %")
     axes.grid(visible=True)
     figure.legend(loc="outside upper right", ncols=2)
     return save_plot(figure, path)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -212,9 +212,24 @@ def pixel_luts(model: WisardModel) -> int:
     )
 
 
-def pareto_front(points: Iterable[Point]) -> tuple[Point, ...]:
+class Costed(Protocol):
+    """What has a cost and an accuracy, as a `Point` has."""
+
+    @property
+    def luts(self) -> int:
+        """What its circuit takes."""
+
+    @property
+    def accuracy(self) -> float:
+        """Share right, 0 to 1."""
+
+
+C = TypeVar("C", bound=Costed)
+
+
+def pareto_front(points: Iterable[C]) -> tuple[C, ...]:
     """The points that no other equals or beats in both LUTs and accuracy, by rising LUTs."""
-    front: list[Point] = []
+    front: list[C] = []
     for point in sorted(points, key=lambda point: (point.luts, -point.accuracy)):
         if not front or point.accuracy > front[-1].accuracy:
             front.append(point)

@@ -49,6 +49,35 @@ def test_a_network_fits_its_budget_and_is_measured_and_can_be_made_again(
 
 
 @pytest.mark.slow
+def test_a_front_has_the_networks_that_no_smaller_one_equals(
+    run: Run, pictures: Path, tmp_path: Path
+) -> None:
+    words = ("train", "--table", pictures, "--levels", 1, "--max-luts", 20, "--epochs", 40, "--pareto")
+    data = json.loads(run(*words, "-o", tmp_path / "m.json", "--json").stdout)
+    front = data["front"]
+    assert 1 <= len(front) <= 3
+    luts, shares = [point["luts"] for point in front], [point["accuracy"] for point in front]
+    assert luts == sorted(set(luts))
+    assert shares == sorted(set(shares))
+    assert (data["luts"], data["validation"]) == (luts[-1], shares[-1])
+    assert luts[0] <= 10
+    names = {f"m-{count}luts.json" for count in luts} | {"m.json", "m-pareto.png", "m-pareto.svg"}
+    assert {path.name for path in tmp_path.iterdir()} == names | {"pictures.npz"}
+    assert (tmp_path / f"m-{luts[-1]}luts.json").read_bytes() == (tmp_path / "m.json").read_bytes()
+    assert "accuracy in validation" in (tmp_path / "m-pareto.svg").read_text()
+
+
+def test_networks_without_rows_for_validation_have_no_front(run: Run, tmp_path: Path) -> None:
+    few = np.arange(12 * 25).reshape(12, 5, 5).astype(np.uint8)
+    np.savez(tmp_path / "few.npz", x_train=few, y_train=np.arange(12) % 2)
+    words = ("--table", tmp_path / "few.npz", "--max-luts", "30", "--epochs", "2", "--pareto")
+    done = run("train", *words, "-o", tmp_path / "m.json")
+    assert done.status == 2
+    assert "no row is kept for validation, by which networks could be compared" in done.stderr
+    assert not (tmp_path / "m.json").exists()
+
+
+@pytest.mark.slow
 def test_few_rows_are_taught_and_the_teacher_is_named(run: Run, tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     rows = rng.integers(0, 256, (80, 3))
