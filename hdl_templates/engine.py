@@ -6,7 +6,7 @@ template is complete, and a segment was ever, `hdl_templates.walk` reads them, `
 them, and `hdl_templates.peaks` keeps what is best.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, Mux, ResetInserter, Signal, Value
@@ -14,6 +14,7 @@ from amaranth.lib.wiring import In, Out
 
 from hdl_templates.buffered import Buffer, buffered
 from hdl_templates.hierarchy import Part, place
+from hdl_templates.interfaces import vivado_interfaces
 from hdl_templates.lanes import scores
 from hdl_templates.peaks import Peaks
 from hdl_templates.walk import walk
@@ -70,6 +71,11 @@ class MatchEngine(Part):
             f"Match engine: {height}x{width} in {rows}x{columns}, {self.engine.bits} bits per cycle "
             f"in {self.engine.lanes} lanes."
         )
+
+    @property
+    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
+        """See `Part.port_attributes`."""
+        return vivado_interfaces(self, streams=("s_axis_segment", "s_axis_template", "m_axis_result"))
 
     def elaborate(self, platform: object) -> Any:
         """Both inputs, what walks through them, the lanes, and what becomes of their scores."""

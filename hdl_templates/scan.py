@@ -25,10 +25,7 @@ from itertools import pairwise
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib.memory import Memory
 
-from wnn2hdl.ir.video import MAX_HEIGHT
-
-HEIGHT_BITS = (MAX_HEIGHT - 1).bit_length()
-"""A height of 0 stands for `MAX_HEIGHT` lines."""
+from wnn2hdl.ir.video import HEIGHT_BITS
 
 
 @dataclass(frozen=True)

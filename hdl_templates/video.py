@@ -29,12 +29,13 @@ from amaranth.lib.wiring import In, Out
 
 from hdl_templates.across import across
 from hdl_templates.hierarchy import Part, place
-from hdl_templates.scan import HEIGHT_BITS, Pixels, scan
+from hdl_templates.interfaces import vivado_interfaces
+from hdl_templates.scan import Pixels, scan
 from hdl_templates.squares import Squares, majorities
 from hdl_templates.stream import queued
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, VideoFormat
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
-from wnn2hdl.ir.video import ANSWER_BITS
+from wnn2hdl.ir.video import ANSWER_BITS, HEIGHT_BITS
 from wnn2hdl.ir.window import SIDE
 
 
@@ -146,25 +147,14 @@ class VideoCore(Part):
         return f"AXI4-Stream Video: {what}, {rate} per clock{lines}."
 
     @property
+    def streams(self) -> tuple[str, ...]:
+        """What the names of the ports of its streams begin with."""
+        return ("s_axis_video", "m_axis_video", *(["m_axis_squares"] if self.squares else []))
+
+    @property
     def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
-        """See `Part.port_attributes`: what groups the ports in Vivado's IP Integrator (AMD UG1118)."""
-        streams = ("s_axis_video", "m_axis_video", *(["m_axis_squares"] if self.squares else []))
-        reset, axis = "xilinx.com:signal:reset:1.0", "xilinx.com:interface:axis:1.0"
-        return {
-            self.clock: {
-                "X_INTERFACE_INFO": f"xilinx.com:signal:clock:1.0 {self.clock} CLK",
-                "X_INTERFACE_PARAMETER": f"ASSOCIATED_BUSIF {':'.join(streams)}, ASSOCIATED_RESET aresetn",
-            },
-            "aresetn": {
-                "X_INTERFACE_INFO": f"{reset} aresetn RST",
-                "X_INTERFACE_PARAMETER": "POLARITY ACTIVE_LOW",
-            },
-            **{
-                port: {"X_INTERFACE_INFO": f"{axis} {stream} {port.removeprefix(f'{stream}_').upper()}"}
-                for stream in streams
-                for port in _stream(stream, 1, In, Out)
-            },
-        }
+        """See `Part.port_attributes`."""
+        return vivado_interfaces(self, streams=self.streams)
 
     def elaborate(self, platform: object) -> Any:
         """The classifiers and their queue; behind it the windows, or nothing; the queue of answers."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wnn2hdl.build import remembered
-from wnn2hdl.build.design import Design
+from wnn2hdl.build.design import IP, Design
 from wnn2hdl.build.emission import SOBEL, Files, baseline_module
 from wnn2hdl.build.simulating import simulate_apart, simulate_parts, simulated_inputs
 from wnn2hdl.build.streaming import sample_frames
@@ -156,9 +156,9 @@ def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[s
 
 
 def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
-    """What is counted: each circuit of a design, the core around them, and the Sobel baseline."""
+    """What is counted: each circuit of a design, the core around them without and with registers, and Sobel."""
     text = read_text(files.verilog, "Verilog")
-    whole = (design.circuit.name,) if design.has_memories else ()
+    whole = (design.circuit.name, IP) if design.has_memories else ()
     jobs = {part: Job(text, design.module(part)) for part in (*design.parts, *whole)}
     jobs[SOBEL] = Job(read_text(files.sobel, "Verilog"), baseline_module(design), baseline=True)
     return jobs

@@ -18,6 +18,7 @@ from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.identifiers import require_name, require_unreserved
 from wnn2hdl.ir.models import AnyModel, load_model
+from wnn2hdl.ir.registers import RegisterMap, engine_registers, video_registers
 from wnn2hdl.ir.verilog_text import check_comment
 from wnn2hdl.lower.targets import TARGETS, Target
 from wnn2hdl.schedule import Stages, pipelined
@@ -31,6 +32,9 @@ CLASSIFIERS = ("pixel", "neighbourhood", "decision")
 
 MODEL_FILE = "model.json"
 DESIGN_FILE = "design.json"
+IP = "ip"
+"""A core with its registers, as a part."""
+
 FORMAT = "wnn2hdl-design"
 VERSION = 4
 
@@ -138,9 +142,22 @@ class Design:
         sets = care_sets(self.circuit)
         return next(sets[name] for name in CLASSIFIERS if name in sets)
 
+    @property
+    def registers(self) -> RegisterMap | None:
+        """The registers of a core; None of designs that are none."""
+        digest = self.model.digest()
+        if self.engine is not None:
+            return engine_registers(self.engine, digest)
+        return None if self.video is None else video_registers(digest)
+
     def module(self, part: str) -> str:
         """The Verilog module of a circuit."""
         return f"{self.name}_{part}"
+
+    @property
+    def outermost(self) -> str:
+        """The Verilog module around all others: of a core the one that has its registers."""
+        return self.module(IP if self.has_memories else self.circuit.name)
 
     def made_by(self, effort: int, versions: Mapping[str, str]) -> tuple[str, ...]:
         """Lines for the comment at the top of the Verilog: what was made, of what, and by what.

@@ -16,9 +16,11 @@ from wnn2hdl.build.design import Design
 from wnn2hdl.build.streaming import sample_frames
 from wnn2hdl.emit import (
     CELLS_FILE,
+    c_header,
     cells_model,
     engine_testbench,
     engine_vectors,
+    python_driver,
     stream_testbench,
     stream_vectors,
     testbench,
@@ -48,6 +50,8 @@ class Files:
         sobel: the baseline.
         testbench: checks the circuit against the model's answers.
         vectors: the inputs and answers that the testbench reads.
+        header: of a core, its registers for C.
+        driver: of a core, its registers for Python.
     """
 
     verilog: Path
@@ -55,6 +59,8 @@ class Files:
     sobel: Path
     testbench: Path
     vectors: Path
+    header: Path | None = None
+    driver: Path | None = None
 
     @classmethod
     def of(cls, design: Design, folder: Path) -> "Files":
@@ -67,13 +73,15 @@ class Files:
             raise InputError(
                 "every build has a file of this name", value=f"{design.name}.v", hint="choose another --name"
             )
-        top = design.module(design.circuit.name)
+        top = design.outermost
+        drivers = [folder / f"{design.name}_registers.{kind}" for kind in ("h", "py") if design.has_memories]
         return cls(
             folder / f"{design.name}.v",
             folder / CELLS_FILE,
             folder / f"{SOBEL}.v",
             folder / f"{top}_tb.v",
             folder / f"{top}_vectors.hex",
+            *drivers,
         )
 
     @property
@@ -82,8 +90,18 @@ class Files:
         return [self.cells, self.verilog]
 
 
+def outermost_part(design: Design) -> Part:
+    """The hardware of a design, of a core with its registers."""
+    if design.registers is None:
+        return top_part(design)
+    if design.engine is not None:
+        return elaborate.engine_ip(design.top, design.engine, design.registers, style=design.style)
+    assert design.video is not None
+    return elaborate.video_ip(design.top, design.video, design.registers, style=design.style)
+
+
 def top_part(design: Design) -> Part:
-    """The hardware of a design."""
+    """The hardware of a design, of a core without its registers."""
     if design.engine is not None:
         return elaborate.match_engine(design.top, design.engine, style=design.style)
     if design.video is None:
@@ -116,9 +134,8 @@ def _baseline(design: Design, threshold: int) -> tuple[Part, str]:
     return core, f"Baseline: video core of the {operator}, of grey pixels."
 
 
-def top_ports(design: Design) -> Ports:
-    """The ports of the hardware of a design."""
-    part = top_part(design)
+def ports(part: Part) -> Ports:
+    """The ports of hardware."""
     widths: dict[Any, dict[str, int]] = {In: {}, Out: {}}
     for name, member in part.signature.members.items():
         widths[member.flow][name] = int(member.shape)
@@ -144,12 +161,13 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         ToolError: Yosys is missing or failed.
     """
     files = Files.of(design, Path())
-    part = top_part(design)
+    part = outermost_part(design)
     prefix = f"{design.name}_"
     rival, title = _baseline(design, sobel_threshold)
     sources = [path.name for path in files.simulated]
-    top = design.module(design.circuit.name)
+    top, registers = design.outermost, design.registers
     if design.engine is not None:
+        assert registers is not None
         rounds = design.engine.sample_rounds()
         data = engine_vectors(design.engine, rounds)
         bench = engine_testbench(
@@ -157,6 +175,7 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
             engine=design.engine,
             cycles=design.latency,
             rounds=rounds,
+            registers=registers,
             vectors_file=files.vectors.name,
             sources=sources,
         )
@@ -169,23 +188,28 @@ def render(design: Design, *, sobel_threshold: int) -> dict[str, str]:
         data = vectors(part, inputs, expected)
         bench = testbench(part, name=top, count=count, vectors_file=files.vectors.name, sources=sources)
     else:
+        assert registers is not None
         frames = sample_frames(design)
         data = stream_vectors(frames, design.video)
         bench = stream_testbench(
             name=top,
             video=design.video,
             beats=frames,
-            has_height=video_part(design).has_lines,
+            registers=registers,
             vectors_file=files.vectors.name,
             sources=sources,
         )
-    return {
+    texts = {
         files.verilog.name: verilog(part, prefix=prefix, header=design.header),
         files.cells.name: cells_model(),
         files.sobel.name: verilog(rival, prefix=prefix, header=[title]),
         files.vectors.name: data,
         files.testbench.name: bench,
     }
+    if registers is not None and files.header is not None and files.driver is not None:
+        texts[files.header.name] = c_header(registers, design.name, top)
+        texts[files.driver.name] = python_driver(registers, top)
+    return texts
 
 
 def render_unpaired(design: Design) -> str:

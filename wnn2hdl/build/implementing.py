@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from wnn2hdl.build.design import Design
-from wnn2hdl.build.emission import top_ports
+from wnn2hdl.build.emission import outermost_part, ports
 from wnn2hdl.build.extending import add_to_report, require_outside, require_unchanged
 from wnn2hdl.build.verification import open_build
-from wnn2hdl.emit.vivado import IMPLEMENT, PART, TIMING, UTILISATION, vivado_scripts
+from wnn2hdl.emit.vivado import IMPLEMENT, PART, TIMING, UTILISATION, circuit_scripts, core_scripts
 from wnn2hdl.files import make_folder, read_text, write_text
 from wnn2hdl.progress import Progress
 from wnn2hdl.synth.harness import harness
@@ -76,11 +76,12 @@ def implement(folder: Path, output: Path, progress: Progress) -> dict[str, Any]:
 
 
 def _scripts(design: Design) -> Mapping[str, str]:
-    top, ports = design.module(design.circuit.name), top_ports(design)
-    if design.video is not None:
-        return vivado_scripts(top, ports, source=f"{design.name}.v", harness=None, megahertz=_VIDEO_MEGAHERTZ)
-    name = f"{design.name}_registers"
+    top, widths, source = design.outermost, ports(outermost_part(design)), f"{design.name}.v"
     megahertz = _MEGAHERTZ if design.stages is None else 1e6 / design.stages.period
-    around = harness(name, top, ports, pins=ports.pins, registered=True)
-    scripts = vivado_scripts(top, ports, source=f"{design.name}.v", harness=name, megahertz=megahertz)
+    if design.registers is not None:
+        megahertz = _VIDEO_MEGAHERTZ if design.video is not None else megahertz
+        return core_scripts(top, widths, design.registers, source=source, megahertz=megahertz)
+    name = f"{design.name}_registers"
+    around = harness(name, top, widths, pins=widths.pins, registered=True)
+    scripts = circuit_scripts(top, source=source, harness=name, megahertz=megahertz)
     return {f"{name}.v": around.verilog, **scripts}

@@ -8,7 +8,7 @@ from typing import Any
 
 from wnn2hdl.build.checking import Proofs, refutation, undecided
 from wnn2hdl.build.design import Design
-from wnn2hdl.build.emission import render_unpaired, top_ports
+from wnn2hdl.build.emission import ports, render_unpaired, top_part
 from wnn2hdl.build.extending import add_to_report, require_outside, require_unchanged
 from wnn2hdl.build.minimising import minimise_once
 from wnn2hdl.build.verification import open_build
@@ -95,7 +95,7 @@ def place_build(
     around = harness(
         name,
         design.module(top),
-        top_ports(design),
+        ports(top_part(design)),
         pins=fabric.pins,
         registered=design.video is None,
     )

@@ -170,9 +170,10 @@ def _play_frame(
             core, frame, progress=partial(progress, "simulating pixels"), vcd=vcd
         ).seconds
     else:
-        module = design.module(design.circuit.name)
-        has_height = video_part(design).has_lines
-        seconds = run_stream(frame, design.video, module, files.simulated, simulator, has_height=has_height)
+        assert design.registers is not None
+        seconds = run_stream(
+            frame, design.video, design.registers, design.outermost, files.simulated, simulator
+        )
         progress("simulating pixels", len(frame), len(frame))
     compile_seconds = time.perf_counter() - started - seconds if simulator != "amaranth" else 0.0
     sent = frame.answers.reshape(height, -1)[:, :width]

@@ -28,7 +28,7 @@ _SOURCES = frozenset(
 def foreign_files(design: Design, folder: Path) -> list[str]:
     """What is missing, and sources that the compiler did not write; one line each."""
     files = Files.of(design, Path())
-    emitted = {path.name for path in vars(files).values()}
+    emitted = {path.name for path in vars(files).values() if path is not None}
     wanted = [*sorted(emitted), MODEL_FILE, DESIGN_FILE, REPORT_FILE, MANIFEST_NAME]
     problems = [f"{name} is missing" for name in wanted if not (folder / name).is_file()]
     problems += [

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from wnn2hdl.emit.register_bench import bus_ports, bus_signals, bus_tasks, identified, offset
 from wnn2hdl.ir.engine import RESULT_WORDS, EngineFormat, Round, picture_words
+from wnn2hdl.ir.registers import RESULT, RegisterMap
 
 _SETTLES = 40
 """Cycles after the last word of a segment in which it gets complete: it goes in bit by bit."""
@@ -24,12 +26,13 @@ def engine_testbench(
     engine: EngineFormat,
     cycles: int,
     rounds: Sequence[Round],
+    registers: RegisterMap,
     vectors_file: str,
     sources: Sequence[str],
 ) -> str:
-    """A self-checking testbench ``NAME_tb`` for a match engine ``NAME``.
+    """A self-checking testbench ``NAME_tb`` for a match engine with registers ``NAME``.
 
-    All three streams pause at random, the same way in each run. A segment, and a template up to its last
+    Both streams pause at random, the same way in each run. A segment, and a template up to its last
     pixel, come while the match before runs. It ends as the benches of `wnn2hdl.emit.testbench.testbench` do.
 
     Args:
@@ -37,6 +40,7 @@ def engine_testbench(
         engine: its sizes.
         cycles: of a match, from the last pixel of a template to the result.
         rounds: the matches, of which the file holds the `engine_vectors`.
+        registers: the engine's.
         vectors_file: its name, without a folder.
         sources: names of the Verilog files of the engine, for the comment that says how to run it.
     """
@@ -53,10 +57,11 @@ def engine_testbench(
         for stream, short, signals in (
             ("s_axis_segment", "s", ("tdata", "tvalid", "tready", "tlast")),
             ("s_axis_template", "t", ("tdata", "tvalid", "tready", "tuser", "tlast")),
-            ("m_axis_result", "m", ("tdata", "tvalid", "tready")),
         )
         for signal in signals
     )
+    ports += ",\n" + ",\n".join(bus_ports())
+    at = {register.name: offset(registers, register.name) for register in registers.registers}
     return f"""\
 // Checks {name} in {count} matches; run it in this folder,
 // with Icarus:    iverilog -o {name}_tb {files} && vvp -N {name}_tb
@@ -70,39 +75,24 @@ module {name}_tb;
     reg aresetn = 1'b0;
     reg s_tvalid = 1'b0;
     reg t_tvalid = 1'b0;
-    reg m_tready = 1'b0;
-    reg waits, taken, put, given, wrong;
+    reg waits, taken, put, wrong;
     integer match, segment, word, pixel, received, settled, now, ended, i;
-    reg [31:0] s_tdata, packed_pixels;
+    reg [31:0] s_tdata, packed_pixels, expected;
     reg [7:0] t_tdata;
     reg s_tlast, t_tuser, t_tlast;
     reg timed = 1'b0;
-    wire [{32 * RESULT_WORDS - 1}:0] m_tdata;
-    wire s_tready, t_tready, m_tvalid;
-
+    wire s_tready, t_tready;
+{bus_signals()}
     {name} dut (
         .aclk(aclk),
         .aresetn(aresetn),
 {ports}
     );
 
-    initial begin
-        $readmemh("{vectors_file}", vectors);
-        match = 0;
-        segment = 0;
-        word = 0;
-        pixel = 0;
-        received = 0;
-        settled = 0;
-        now = 0;
-        ended = 0;
-        wrong = 1'b0;
-        repeat (4) begin
-            #1 aclk = 1'b1;
-            #1 aclk = 1'b0;
-        end
-        aresetn = 1'b1;
-        while (received < {count} && !wrong) begin
+{bus_tasks(name)}
+    // A cycle.
+    task step;
+        begin
             // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
             random = random ^ (random << 13);
             random = random ^ (random >> 17);
@@ -122,50 +112,81 @@ module {name}_tb;
                 t_tuser = pixel == 0;
                 t_tlast = pixel % {engine.template[1]} == {engine.template[1] - 1};
             end
-            m_tready = random[9:8] != 2'b00;
             #1;
             taken = s_tvalid && s_tready;
             put = t_tvalid && t_tready;
-            given = m_tvalid && m_tready;
-            wrong = ^{{s_tready, t_tready, m_tvalid}} === 1'bx || (timed && now - ended > {cycles});
-            if (timed && m_tvalid) begin
-                wrong = wrong || now - ended != {cycles};
+            // The interrupt comes a cycle after the result.
+            wrong = wrong || ^{{s_tready, t_tready, irq}} === 1'bx || (timed && now - ended > {cycles + 1});
+            if (timed && irq) begin
+                wrong = wrong || now - ended != {cycles + 1};
                 timed = 1'b0;
             end
-            for (i = 0; i < {RESULT_WORDS}; i = i + 1)
-                if (given && m_tdata[32 * i +: 32] !== vectors[{results_at} + {RESULT_WORDS} * received + i])
-                    wrong = 1'b1;
-            if (!wrong) begin
-                #1 aclk = 1'b1;
-                #1 aclk = 1'b0;
-                if (taken) begin
-                    word = word + 1;
-                    s_tvalid = 1'b0;
-                end
-                if (put) begin
-                    pixel = pixel + 1;
-                    t_tvalid = 1'b0;
-                    timed = pixel == {pixels};
-                    ended = now;
-                end
-                if (given) received = received + 1;
-                settled = word < {words} ? 0 : settled + 1;
-                if (match < {count} && pixel == {pixels} && word == {words}) begin
-                    match = match + 1;
-                    if (match < {count}) begin
-                        pixel = 0;
-                        if (fresh[match]) begin
-                            word = 0;
-                            segment = segment + 1;
-                        end
+            #1 aclk = 1'b1;
+            #1 aclk = 1'b0;
+            if (taken) begin
+                word = word + 1;
+                s_tvalid = 1'b0;
+            end
+            if (put) begin
+                pixel = pixel + 1;
+                t_tvalid = 1'b0;
+                timed = pixel == {pixels};
+                ended = now;
+            end
+            settled = word < {words} ? 0 : settled + 1;
+            if (match < {count} && pixel == {pixels} && word == {words}) begin
+                match = match + 1;
+                if (match < {count}) begin
+                    pixel = 0;
+                    if (fresh[match]) begin
+                        word = 0;
+                        segment = segment + 1;
                     end
                 end
-                now = now + 1;
+            end
+            now = now + 1;
+        end
+    endtask
+
+    initial begin
+        $readmemh("{vectors_file}", vectors);
+        match = 0;
+        segment = 0;
+        word = 0;
+        pixel = 0;
+        received = 0;
+        settled = 0;
+        now = 0;
+        ended = 0;
+        wrong = 1'b0;
+        repeat (4) begin
+            #1 aclk = 1'b1;
+            #1 aclk = 1'b0;
+        end
+        aresetn = 1'b1;
+        // No template begins before it is enabled.
+{identified(registers)}        write({at["interrupt_enable"]}, 32'd1, 2'd0);
+        if (pixel != 0) refuse;
+        write({at["control"]}, 32'd1, 2'd0);
+        while (received < {count} && !wrong && !denied) begin
+            step;
+            if (irq) begin
+                for (i = 0; i < {RESULT_WORDS}; i = i + 1) begin
+                    expected = vectors[{results_at} + {RESULT_WORDS} * received + i];
+                    read({at[RESULT[0]]} + 4 * i, expected, 2'd0);
+                end
+                // The result stays until now.
+                write({at["interrupt"]}, 32'd1, 2'd0);
+                received = received + 1;
             end
         end
+        read({at["matches"]}, 32'd{count}, 2'd0);
+        read({at["malformed"]}, 32'd0, 2'd0);
         if (wrong) begin
             $display("FAIL: {name}, match %0d of {count}", received);
-            $display("  %0d cycles, expected {cycles}; result %h", now - ended, m_tdata);
+            $display("  %0d cycles, expected {cycles + 1}", now - ended);
+        end
+        if (wrong || denied) begin
             $stop;
             $finish;
         end

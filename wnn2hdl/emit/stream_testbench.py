@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 from itertools import chain
 
-from wnn2hdl.ir.video import ANSWER_BITS, Beats, VideoFormat
+from wnn2hdl.emit.register_bench import bus_ports, bus_signals, bus_tasks, identified, offset
+from wnn2hdl.ir.registers import RegisterMap
+from wnn2hdl.ir.video import ANSWER_BITS, HEIGHT_BITS, Beats, VideoFormat
 
 _PATIENCE = 1 << 14
 """Cycles without a beat that show a core that is stuck: longer than two lines take."""
@@ -58,28 +60,33 @@ def stream_testbench(
     name: str,
     video: VideoFormat,
     beats: Beats,
-    has_height: bool,
+    registers: RegisterMap,
     vectors_file: str,
     sources: Sequence[str],
 ) -> str:
-    """A self-checking testbench ``NAME_tb`` for a video core ``NAME``.
+    """A self-checking testbench ``NAME_tb`` for a video core with registers ``NAME``.
 
-    Both sides pause at random, the same way in each run. It ends as the benches of
-    `wnn2hdl.emit.testbench.testbench` do.
+    Both sides pause at random, the same way in each run; registers are read meanwhile. It ends as the benches
+    of `wnn2hdl.emit.testbench.testbench` do.
 
     Args:
         name: the module of the core.
         video: its streams.
-        has_height: whether the core counts lines.
-        beats: what it sends and has to get.
-        vectors_file: name of the file with the `stream_vectors` of these beats, without a folder.
+        beats: what goes through.
+        registers: the core's.
+        vectors_file: name of the file with the `stream_vectors` of the beats, without a folder.
         sources: names of the Verilog files of the core, for the comment that says how to run it.
     """
     files = " ".join([*sources, f"{name}_tb.v"])
     count, votes = len(beats), len(beats.voted())
-    told = f"        .height(12'd{beats.height % 4096}),\n" if has_height else ""
+    whole = sum(lines == beats.height for lines in beats.lines)
+    # The last frame ends without another one, if it is whole.
+    cut = sum(lines != beats.height for lines in beats.lines[:-1])
+    at = {register.name: offset(registers, register.name) for register in registers.registers}
     pixels, answers = (bits * video.pixels_per_clock for bits in (video.pixel_bits, ANSWER_BITS))
     word = pixels + answers + 2
+    bus = ",\n".join(bus_ports())
+    version = sum(field.value << field.low for field in registers.register("version").fields)
     streams = ",\n".join(
         f"        .{side}_axis_video_{signal}({side}_{signal})" for side in "sm" for signal in _SIGNALS
     )
@@ -110,24 +117,18 @@ module {name}_tb;
     wire s_tready;
     wire [{answers - 1}:0] m_tdata;
     wire m_tvalid, m_tuser, m_tlast;
-{declared}
+{declared}{bus_signals()}
     {name} dut (
         .aclk(aclk),
         .aresetn(aresetn),
-{told}{streams}
+{bus},
+{streams}
     );
 
-    initial begin
-        $readmemh("{vectors_file}", vectors);
-        sent = 0;
-        received = 0;
-        idle = 0;
-        repeat (4) begin
-            #1 aclk = 1'b1;
-            #1 aclk = 1'b0;
-        end
-        aresetn = 1'b1;
-        while (({waits}) && idle < {_PATIENCE}) begin
+{bus_tasks(name)}
+    // A cycle.
+    task step;
+        begin
             // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
             random = random ^ (random << 13);
             random = random ^ (random >> 17);
@@ -158,8 +159,41 @@ module {name}_tb;
             if (given) received = received + 1;
             idle = taken || given ? 0 : idle + 1;
         end
-        if ({waits}) begin
+    endtask
+
+    initial begin
+        $readmemh("{vectors_file}", vectors);
+        sent = 0;
+        received = 0;
+        idle = 0;
+        repeat (4) begin
+            #1 aclk = 1'b1;
+            #1 aclk = 1'b0;
+        end
+        aresetn = 1'b1;
+        // No frame begins before it is enabled.
+{identified(registers)}        write({at["height"]}, 32'd{beats.height % (1 << HEIGHT_BITS)}, 2'd0);
+        write({at["interrupt_enable"]}, 32'd1, 2'd0);
+        if (sent != 0) refuse;
+        write({at["control"]}, 32'd1, 2'd0);
+        while (({waits}) && idle < {_PATIENCE} && !denied) begin
+            step;
+            if (random[15:10] == 6'd0) read({at["version"]}, 32'h{version:08x}, 2'd0);
+        end
+        if (({waits}) && !denied) begin
             $display("FAIL: {name} stopped after %0d of {count} beats", received);
+            $stop;
+            $finish;
+        end
+        repeat (4) step;
+        if (irq !== 1'b1) refuse;
+        read({at["frames"]}, 32'd{whole}, 2'd0);
+        read({at["malformed"]}, 32'd{cut}, 2'd0);
+        read({at["width"]}, 32'd{beats.width}, 2'd0);
+        read({at["status"]}, 32'd0, 2'd0);
+        write({at["interrupt"]}, 32'd1, 2'd0);
+        if (irq !== 1'b0) refuse;
+        if (denied) begin
             $stop;
             $finish;
         end

@@ -1,6 +1,7 @@
 """Amaranth components as one readable Verilog-2001 file."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
 
 from amaranth.back import rtlil
 from amaranth.hdl import ClockDomain, Fragment
@@ -90,13 +91,23 @@ def _text(module: Module, attributes: Mapping[str, Mapping[str, str]]) -> str:
         else f"{_marks(attributes, port)}    output wire {range_of(len(bits))}{port}"
         for port, bits in module.outputs.items()
     ]
-    levels = _levels(found)
+    # Instances that answer each other have no order: their outputs are declared ahead, and they stand last.
+    around = _has_circle(found)
+    levels = _levels(found, instances_last=around)
     ordered = sorted(
         (statement for statement in found if not statement.clock),
-        key=lambda statement: (UNUSED in statement.drives, levels[statement.drives[0]]),
+        key=lambda statement: (
+            UNUSED in statement.drives,
+            around and bool(statement.head),
+            levels[statement.drives[0]],
+        ),
+    )
+    declared = dict.fromkeys(
+        [*module.outputs, *(net for x in found if around and x.head for net in x.drives)]
     )
     lines = [_register(registers[net], net, widths) for net in registers if net not in module.outputs]
-    lines += [_line(statement, widths, module) for statement in ordered]
+    lines += [_wire(net, widths) for net in declared if net not in module.outputs]
+    lines += [_line(statement, widths, module, declared) for statement in ordered]
     for net, register in registers.items():
         if register.initial is not None:
             lines += _initial(register, net, widths)
@@ -125,28 +136,50 @@ def _initial(register: Statement, net: str, widths: Mapping[str, int]) -> list[s
     return [f"    integer {count};", f"    initial {loop} {net}[{count}] = {value};"]
 
 
-def _line(statement: Statement, widths: Mapping[str, int], module: Module) -> str:
+def _wire(net: str, widths: Mapping[str, int]) -> str:
+    return f"    wire {range_of(widths[net])}{net};"
+
+
+def _line(statement: Statement, widths: Mapping[str, int], module: Module, declared: Container[str]) -> str:
     if statement.head:
-        declared = [
-            f"    wire {range_of(widths[net])}{net};" for net in statement.drives if net not in module.outputs
-        ]
-        return "\n".join([*declared, _wrapped(f"    {statement.head} (", f"{statement.text});")])
+        wires = [_wire(net, widths) for net in statement.drives if net not in declared]
+        return "\n".join([*wires, _wrapped(f"    {statement.head} (", f"{statement.text});")])
     (net,) = statement.drives
     start = "assign " if net in module.outputs else f"wire {range_of(widths[net])}"
     return _wrapped(f"    {start}{net} = ", f"{statement.text};")
 
 
-def _levels(found: Sequence[Statement]) -> dict[str, int]:
-    """How many statements lie between the inputs or registers and each net."""
+def _has_circle(found: Sequence[Statement]) -> bool:
+    """Whether statements depend on each other in a circle, which leads through instances."""
+    drivers = {net: statement for statement in found for net in statement.drives if not statement.clock}
+    graph = {
+        id(statement): [id(drivers[net]) for net in statement.reads if net in drivers]
+        for statement in drivers.values()
+    }
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError:
+        return True
+    return False
+
+
+def _levels(found: Sequence[Statement], *, instances_last: bool) -> dict[str, int]:
+    """How many statements lie between the inputs or registers and each net.
+
+    Args:
+        found: the statements.
+        instances_last: take what instances drive as inputs.
+    """
     drivers = {net: statement for statement in found for net in statement.drives}
     levels: dict[str, int] = {}
     stack = list(drivers)
     while stack:
         net = stack[-1]
         statement = drivers[net]
+        first = bool(statement.clock) or (instances_last and bool(statement.head))
         missing = [x for x in statement.reads if x in drivers and x not in levels]
-        if statement.clock or not missing:
-            below = () if statement.clock else (levels[x] for x in statement.reads if x in drivers)
+        if first or not missing:
+            below = () if first else (levels[x] for x in statement.reads if x in drivers)
             levels |= dict.fromkeys(statement.drives, 1 + max(below, default=0))
             stack.pop()
         else:

@@ -25,8 +25,14 @@ FORMATS = (*("".join(order) for order in permutations(CHANNELS)), MONO)
 MAX_WIDTH = 4096
 """The longest line that a core can be made for, in pixels."""
 
+WIDTH_BITS = MAX_WIDTH.bit_length()
+"""Bits of a number of pixels in a line."""
+
 MAX_HEIGHT = 4096
 """The most lines of a frame."""
+
+HEIGHT_BITS = (MAX_HEIGHT - 1).bit_length()
+"""Bits of a number of lines; 0 stands for `MAX_HEIGHT`."""
 
 PIXELS_PER_CLOCK = (1, 2, 4)
 """How many pixels a beat can have."""
@@ -156,6 +162,18 @@ class Beats:
 
     def __len__(self) -> int:
         return len(self.pixels)
+
+    @property
+    def lines(self) -> list[int]:
+        """Lines of each frame."""
+        places = np.flatnonzero(self.starts)
+        return [int(ends.sum()) for ends in np.split(self.ends, places[1:])]
+
+    @property
+    def width(self) -> int:
+        """Pixels of the first line of the last frame."""
+        first = int(np.flatnonzero(self.starts)[-1])
+        return int(self.ends[first:].argmax() + 1) * self.pixels.shape[1]
 
     def sent(self, pixel_bits: int) -> list[int]:
         """TDATA of each beat that goes in, whose pixels have so many bits."""

@@ -11,11 +11,11 @@ from typing import Any
 
 from amaranth.sim import Simulator
 
-from hdl_templates.scan import HEIGHT_BITS
 from hdl_templates.video import VideoCore
 from wnn2hdl.emit.stream_testbench import stream_testbench, stream_vectors
 from wnn2hdl.errors import CheckError, ToolError
-from wnn2hdl.ir.video import Beats, VideoFormat
+from wnn2hdl.ir.registers import RegisterMap
+from wnn2hdl.ir.video import HEIGHT_BITS, Beats, VideoFormat
 from wnn2hdl.verify.compiled import RUN, CompiledSimulator
 from wnn2hdl.verify.simulation import Progress, SimulationResult, recorded
 
@@ -57,11 +57,11 @@ def simulate_stream(
 def run_stream(
     beats: Beats,
     video: VideoFormat,
+    registers: RegisterMap,
     module: str,
     sources: Sequence[Path],
     simulator: CompiledSimulator,
     *,
-    has_height: bool,
     timeout: float = 600.0,
 ) -> float:
     """Send frames through emitted Verilog, as `simulate_stream` does, in a compiled simulator.
@@ -69,10 +69,10 @@ def run_stream(
     Args:
         beats: the frames.
         video: the core's streams.
-        module: the core's module.
+        registers: the core's.
+        module: of the core with its registers.
         sources: its Verilog files.
         simulator: who simulates.
-        has_height: whether the core counts lines.
         timeout: seconds for compiling and for running, each.
 
     Returns:
@@ -90,7 +90,7 @@ def run_stream(
             name=module,
             video=video,
             beats=beats,
-            has_height=has_height,
+            registers=registers,
             vectors_file="beats.hex",
             sources=[source.name for source in sources],
         )

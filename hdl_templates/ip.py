@@ -1,0 +1,170 @@
+# amaranth: UnusedElaboratable=no
+"""Cores as IPs: with registers behind AXI4-Lite in the place of the ports that a processor serves."""
+
+from collections.abc import Mapping
+
+from amaranth.hdl import Module, Signal
+from amaranth.lib.wiring import Out
+
+from hdl_templates.axi_lite import BUS, AxiLiteRegisters, bus_members
+from hdl_templates.engine import MatchEngine
+from hdl_templates.frames import FrameControl
+from hdl_templates.hierarchy import Part, place
+from hdl_templates.interfaces import pass_on, ports_of, vivado_interfaces
+from hdl_templates.matches import MatchControl
+from hdl_templates.video import VideoCore
+from wnn2hdl.ir.registers import DATA_BITS, RESULT, RegisterMap
+from wnn2hdl.ir.video import MAX_WIDTH
+
+
+class VideoIp(Part):
+    """A video core with registers.
+
+    Args:
+        core: the core.
+        registers: its registers, see `wnn2hdl.ir.registers.video_registers`.
+
+    Members:
+        aresetn: In, synchronous reset, active low.
+        s_axis_video_*, m_axis_video_*, m_axis_squares_*: the core's streams.
+        s_axi_control_*: the bus of the registers.
+        irq: Out, the interrupt, as long as an event that is enabled was not cleared.
+    """
+
+    clocked = True
+    clock = "aclk"
+    module_name = "ip"
+
+    def __init__(self, *, core: VideoCore, registers: RegisterMap) -> None:
+        self.core, self.registers = core, registers
+        kept = {name: member for name, member in core.signature.members.items() if name != "height"}
+        super().__init__({**kept, **bus_members(), "irq": Out(1)})
+
+    @property
+    def summary(self) -> str:
+        """See `Part.summary`."""
+        return f"{self.core.summary} Registers behind AXI4-Lite."
+
+    @property
+    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
+        """See `Part.port_attributes`."""
+        return vivado_interfaces(self, streams=self.core.streams, bus=BUS)
+
+    def elaborate(self, platform: object) -> Module:
+        """The core, its registers, and what watches its frames."""
+        m = Module()
+        core, control = self.core, AxiLiteRegisters(registers=self.registers)
+        longest = core.places if core.has_lines else core.video.beats_of(MAX_WIDTH)
+        frames = FrameControl(pixels=core.video.pixels_per_clock, longest=longest)
+        _place(m, self, platform, control, core, frames)
+        if core.has_lines:
+            m.d.comb += core.height.eq(frames.frame_height)
+        pass_on(m, self, core, (f"s_axis_video_{name}" for name in ("tdata", "tuser", "tlast")))
+        for stream in core.streams[1:]:
+            pass_on(m, self, core, ports_of(core, stream))
+        m.d.comb += [
+            core.s_axis_video_tvalid.eq(self.s_axis_video_tvalid & frames.passes),
+            self.s_axis_video_tready.eq(core.s_axis_video_tready & frames.passes),
+            frames.s_tvalid.eq(self.s_axis_video_tvalid),
+            frames.s_tready.eq(core.s_axis_video_tready),
+            frames.s_tuser.eq(self.s_axis_video_tuser),
+            frames.s_tlast.eq(self.s_axis_video_tlast),
+            frames.m_tvalid.eq(core.m_axis_video_tvalid),
+            frames.m_tready.eq(self.m_axis_video_tready),
+            frames.m_tuser.eq(core.m_axis_video_tuser),
+            frames.m_tlast.eq(core.m_axis_video_tlast),
+            frames.enable.eq(control.control_enable),
+            frames.height.eq(control.height),
+            control.status_running.eq(frames.running),
+            control.interrupt_frame.eq(frames.answered),
+            control.interrupt_malformed.eq(frames.gone_wrong),
+            control.frames.eq(frames.frames),
+            control.malformed.eq(frames.malformed),
+            control.width.eq(frames.width),
+        ]
+        return m
+
+
+class EngineIp(Part):
+    """A match engine with registers, from which results are read.
+
+    Args:
+        core: the engine.
+        registers: its registers, see `wnn2hdl.ir.registers.engine_registers`.
+
+    Members:
+        aresetn: In, synchronous reset, active low.
+        s_axis_segment_*, s_axis_template_*: the engine's streams.
+        s_axi_control_*: the bus of the registers.
+        irq: Out, the interrupt, as long as an event that is enabled was not cleared.
+    """
+
+    clocked = True
+    clock = "aclk"
+    module_name = "ip"
+
+    def __init__(self, *, core: MatchEngine, registers: RegisterMap) -> None:
+        self.core, self.registers = core, registers
+        results = ports_of(core, "m_axis_result")
+        kept = {name: member for name, member in core.signature.members.items() if name not in results}
+        super().__init__({**kept, **bus_members(), "irq": Out(1)})
+
+    @property
+    def summary(self) -> str:
+        """See `Part.summary`."""
+        return f"{self.core.summary} Registers behind AXI4-Lite."
+
+    @property
+    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
+        """See `Part.port_attributes`."""
+        return vivado_interfaces(self, streams=("s_axis_segment", "s_axis_template"), bus=BUS)
+
+    def elaborate(self, platform: object) -> Module:
+        """The engine, its registers, and what watches its matches."""
+        m = Module()
+        core, control = self.core, AxiLiteRegisters(registers=self.registers)
+        matches = MatchControl(engine=core.engine)
+        _place(m, self, platform, control, core, matches)
+        pass_on(m, self, core, ports_of(core, "s_axis_segment"))
+        pass_on(m, self, core, (f"s_axis_template_{name}" for name in ("tdata", "tuser", "tlast")))
+        m.d.comb += [
+            core.s_axis_template_tvalid.eq(self.s_axis_template_tvalid & matches.passes),
+            self.s_axis_template_tready.eq(core.s_axis_template_tready & matches.passes),
+            matches.template_tvalid.eq(self.s_axis_template_tvalid),
+            matches.template_tready.eq(core.s_axis_template_tready),
+            matches.template_tuser.eq(self.s_axis_template_tuser),
+            matches.template_tlast.eq(self.s_axis_template_tlast),
+            matches.segment_tvalid.eq(self.s_axis_segment_tvalid),
+            matches.segment_tready.eq(core.s_axis_segment_tready),
+            matches.segment_tlast.eq(self.s_axis_segment_tlast),
+            matches.result_tvalid.eq(core.m_axis_result_tvalid),
+            core.m_axis_result_tready.eq(matches.result_tready),
+            matches.enable.eq(control.control_enable),
+            matches.waits.eq(control.interrupt_match_waits),
+            control.status_running.eq(matches.running),
+            control.status_segment.eq(matches.has_segment),
+            control.interrupt_match.eq(matches.ended),
+            control.interrupt_malformed.eq(matches.gone_wrong),
+            control.matches.eq(matches.matches),
+            control.malformed.eq(matches.malformed),
+        ]
+        for position, name in enumerate(RESULT):
+            register = self.registers.register(name)
+            for field in register.fields:
+                low = position * DATA_BITS + field.low
+                bits = core.m_axis_result_tdata[low : low + field.width]
+                m.d.comb += getattr(control, register.signal(field)).eq(bits)
+        return m
+
+
+def _place(m: Module, ip: Part, platform: object, control: AxiLiteRegisters, core: Part, watch: Part) -> None:
+    """Place a core, its registers, and what watches it; all but the registers are reset by these, too."""
+    for name, part in (("core", core), ("control", control), ("watch", watch)):
+        place(m, name, part, platform)
+    pass_on(m, ip, control, ["aresetn", *ports_of(ip, BUS), "irq"])
+    resetn = Signal()
+    m.d.comb += [
+        resetn.eq(ip.aresetn & ~control.control_reset),
+        core.aresetn.eq(resetn),
+        watch.aresetn.eq(resetn),
+    ]
