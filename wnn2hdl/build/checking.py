@@ -156,7 +156,7 @@ def synthesise_parts(design: Design, files: Files, progress: Progress) -> dict[s
 
 
 def synthesis_jobs(design: Design, files: Files) -> dict[str, Job]:
-    """What is counted: each circuit of a design, the core around them without and with registers, and Sobel."""
+    """What is counted: circuits, the core around them without and with registers, and Sobel."""
     text = read_text(files.verilog, "Verilog")
     whole = (design.circuit.name, IP) if design.has_memories else ()
     jobs = {part: Job(text, design.module(part)) for part in (*design.parts, *whole)}

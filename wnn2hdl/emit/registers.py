@@ -17,7 +17,7 @@ _DRIVER = '''\
 """The registers of {ip}, a {core}.
 
 `{kind}` works with all that has ``read(offset)`` and ``write(offset, value)`` of 32-bit words: the IP of a
-PYNQ overlay, ``pynq.MMIO``, or an object of your own. Made by wnn2hdl of the same description as the hardware.
+PYNQ overlay, ``pynq.MMIO``, or an object of your own. Made of the same description as the hardware.
 """
 
 

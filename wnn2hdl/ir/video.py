@@ -173,7 +173,7 @@ class Beats:
     def width(self) -> int:
         """Pixels of the first line of the last frame."""
         first = int(np.flatnonzero(self.starts)[-1])
-        return int(self.ends[first:].argmax() + 1) * self.pixels.shape[1]
+        return (int(self.ends[first:].argmax()) + 1) * int(self.pixels.shape[1])
 
     def sent(self, pixel_bits: int) -> list[int]:
         """TDATA of each beat that goes in, whose pixels have so many bits."""

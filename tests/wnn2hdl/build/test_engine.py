@@ -31,7 +31,7 @@ def engine(model: WisardModel, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 def test_lanes_are_proved_and_the_engine_around_them_is_counted(engine: Path) -> None:
     design, _, report = open_build(engine)
-    assert list(report["parts"]) == ["agreement", "lane", "engine", "sobel"]
+    assert list(report["parts"]) == ["agreement", "lane", "engine", "ip", "sobel"]
     assert report["proof"]["status"] == "proved"
     assert "simulated" in report["proof"]["method"]
     assert design.engine is not None

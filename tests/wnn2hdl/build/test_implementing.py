@@ -1,7 +1,6 @@
 """Builds in Vivado: scripts that fit the Verilog, and the reading of what a Vivado reported."""
 
 import os
-import re
 import shutil
 import sys
 from pathlib import Path
@@ -63,28 +62,37 @@ def test_scripts_of_a_core_name_ports_and_streams_that_it_has(
     assert compile_model(model, tmp_path / "core", options, silent).failure is None
     files = {file.name for file in write_vivado(tmp_path / "core", tmp_path / "out")}
     assert files == {"core.v", CONSTRAINTS, IMPLEMENT, PACKAGE, BLOCK_DESIGN}
-    module = ports(((tmp_path / "out" / "core.v").read_text(),), "core_video")
-    shown = "".join(
-        run(["tclsh", STUBS, tmp_path / "out" / script], timeout=60).output
-        for script in (IMPLEMENT, PACKAGE, BLOCK_DESIGN)
-    )
-    pins = set(re.findall(r"CALL get_bd_pins \{\} core/(\w+)", shown))
-    pins |= set(re.findall(r"CALL get_ports \{\} (\w+)", shown))
-    assert pins == {"aclk", "aresetn", "height"}
-    assert pins <= set(module["ports"])
+    module = ports(((tmp_path / "out" / "core.v").read_text(),), "core_ip")
     marked = {
-        port: net["attributes"]["X_INTERFACE_INFO"]
+        port: net["attributes"]["X_INTERFACE_INFO"].split()
         for port, net in module["netnames"].items()
-        if "X_INTERFACE_INFO" in net["attributes"]
+        if port in module["ports"]
     }
-    assert set(module["ports"]) - set(marked) == {"height"}
-    streams = set(re.findall(r"CALL get_bd_intf_pins \{\} core/(\w+)", shown))
-    assert streams == {"s_axis_video", "m_axis_video"}
-    for stream in streams:
-        for signal in ("TDATA", "TVALID", "TREADY", "TUSER", "TLAST"):
-            assert marked[f"{stream}_{signal.lower()}"] == f"xilinx.com:interface:axis:1.0 {stream} {signal}"
+    for port, (_, group, signal) in marked.items():
+        assert port in (f"{group}_{signal.lower()}", group)
+    kinds = {group: kind for kind, group, _ in marked.values()}
+    axis = "xilinx.com:interface:axis:1.0"
+    assert kinds == {
+        "aclk": "xilinx.com:signal:clock:1.0",
+        "aresetn": "xilinx.com:signal:reset:1.0",
+        "irq": "xilinx.com:signal:interrupt:1.0",
+        "s_axis_video": axis,
+        "m_axis_video": axis,
+        "s_axi_control": "xilinx.com:interface:aximm:1.0",
+    }
+    for stream in ("s_axis_video", "m_axis_video"):
+        assert {signal for _, group, signal in marked.values() if group == stream} == {
+            "TDATA",
+            "TVALID",
+            "TREADY",
+            "TUSER",
+            "TLAST",
+        }
     parameters = module["netnames"]["aclk"]["attributes"]["X_INTERFACE_PARAMETER"]
-    assert parameters == "ASSOCIATED_BUSIF s_axis_video:m_axis_video, ASSOCIATED_RESET aresetn"
+    assert parameters == "ASSOCIATED_BUSIF s_axis_video:m_axis_video:s_axi_control, ASSOCIATED_RESET aresetn"
+    # The scripts may name no other pins and interfaces than these.
+    for script in (IMPLEMENT, PACKAGE, BLOCK_DESIGN):
+        run(["tclsh", STUBS, tmp_path / "out" / script, *kinds], timeout=60)
 
 
 def test_a_pixel_is_implemented_between_registers(changeable: Path, tmp_path: Path) -> None:

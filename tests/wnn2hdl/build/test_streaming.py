@@ -20,6 +20,7 @@ from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.evaluation.squares import vote
 from wnn2hdl.images import read_rgb, write_png
 from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, VideoFormat, WisardModel, window_codes
+from wnn2hdl.ir.registers import video_registers
 from wnn2hdl.ir.video import Answer, Beats
 from wnn2hdl.ir.window import framed_window_codes
 from wnn2hdl.tools import run_icarus
@@ -43,9 +44,9 @@ def video(model: WisardModel, imagery: Path, tmp_path_factory: pytest.TempPathFa
 def test_the_report_counts_the_core_with_its_buffers_beside_its_circuits(video: Path) -> None:
     _, _, report = open_build(video)
     parts = report["parts"]
-    assert list(parts) == ["pixel", "edge", "video", "sobel"]
+    assert list(parts) == ["pixel", "edge", "video", "ip", "sobel"]
     assert parts["video"]["bram36"] == 0.5
-    assert parts["video"]["ffs"] > 0
+    assert 0 < parts["video"]["ffs"] < parts["ip"]["ffs"]
     assert "simulated" in report["proof"]["method"]
     assert report["options"]["simulated_vectors"]["video"] > 500
 
@@ -70,6 +71,29 @@ def test_the_testbench_passes_and_finds_a_border_of_zeros(video: Path, tmp_path:
     (tmp_path / "wrong.v").write_text(wrong)
     with pytest.raises(ToolError) as failed:
         run_icarus([files.cells, tmp_path / "wrong.v", files.testbench], top, cwd=tmp_path, timeout=60)
+    assert "FAIL" in failed.value.output
+
+
+@pytest.mark.simulator
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        # A frame begins without being enabled, the height has no effect, events are not counted.
+        ("may_begin <= enable &", "may_begin <="),
+        ("frame_height <= height", "frame_height <= 12'h000"),
+        ("if (answered) frames <=", "if (gone_wrong) frames <="),
+        ("10'h00a", "10'h00b"),
+    ],
+)
+def test_the_testbench_finds_wrong_registers(video: Path, right: str, wrong: str, tmp_path: Path) -> None:
+    _, files, _ = open_build(video)
+    (tmp_path / files.vectors.name).write_text(files.vectors.read_text())
+    text = files.verilog.read_text()
+    assert text.count(right) == 1
+    (tmp_path / "wrong.v").write_text(text.replace(right, wrong))
+    sources = [files.cells, tmp_path / "wrong.v", files.testbench]
+    with pytest.raises(ToolError) as failed:
+        run_icarus(sources, files.testbench.stem, cwd=tmp_path, timeout=60)
     assert "FAIL" in failed.value.output
 
 
@@ -111,10 +135,11 @@ def test_a_picture_wider_than_the_lines_is_refused(video: Path, tmp_path: Path) 
 def test_a_wrong_answer_is_found_in_icarus(video: Path) -> None:
     design, files, _ = open_build(video)
     assert design.video is not None
+    assert design.registers is not None
     beats = sample_frames(design)
     wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
     with pytest.raises(CheckError, match="icarus disagrees"):
-        run_stream(wrong, design.video, design.module("video"), files.simulated, "icarus", has_height=True)
+        run_stream(wrong, design.video, design.registers, design.outermost, files.simulated, "icarus")
 
 
 def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
@@ -144,10 +169,14 @@ def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
     video = VideoFormat(answer="class")
     assert stream_vectors(beats, video) == "280abcdef\n101000001\n"
     text = stream_testbench(
-        name="x", video=video, beats=beats, has_height=False, vectors_file="x.hex", sources=["x.v"]
+        name="x",
+        video=video,
+        beats=beats,
+        registers=video_registers("0" * 64),
+        vectors_file="x.hex",
+        sources=["x.v"],
     )
     assert "reg [33:0] vectors [0:1];" in text
-    assert "height" not in text
     video = VideoFormat(answer="class", pixels_per_clock=2, format="mono")
     frame = np.array([[0xAB, 1]], dtype=np.uint32)
     beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)], 2)
@@ -221,7 +250,8 @@ def test_squares_of_a_picture_are_those_of_the_software(
         simulate_stream(video_part(design), wrong)
     assert design.video is not None
     with pytest.raises(CheckError, match=r"icarus disagrees: .*square"):
-        run_stream(wrong, design.video, design.module("video"), files.simulated, "icarus", has_height=True)
+        assert design.registers is not None
+        run_stream(wrong, design.video, design.registers, design.outermost, files.simulated, "icarus")
 
 
 def test_squares_are_as_wide_as_whole_beats(model: WisardModel) -> None:
