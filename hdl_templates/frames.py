@@ -75,7 +75,9 @@ class FrameControl(Part):
             fits.eq(Cat(self.frame_height == self.height, fits)),
             may_begin.eq(self.enable & fits.all() & (self.frame_height == self.height)),
         ]
-        with m.If(self.s_tvalid & self.s_tuser & self.enable & ~may_begin):
+        takes_height = Signal(name="takes_height")
+        m.d.comb += takes_height.eq(self.s_tvalid & self.s_tuser & self.enable & ~may_begin)
+        with m.If(takes_height):
             m.d.sync += self.frame_height.eq(self.height)
         m.d.comb += self.passes.eq(~self.s_tuser | may_begin)
 
