@@ -19,7 +19,8 @@ class FrameControl(Part):
 
     A frame's first beat is held back while the core is not enabled, and for a few cycles where the height has
     changed. The height of a frame that is in the core is kept: another one is given to the core while the
-    first beat of a frame waits, so frames have to be longer than the few beats that wait in the core.
+    first beat of a frame waits. So where heights change, frames have to have more lines than the core keeps, or
+    one frame may be counted wrongly.
 
     Args:
         pixels: of a beat, a power of two.

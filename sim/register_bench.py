@@ -1,7 +1,8 @@
 """The cocotb test of a video core's registers: `cocotbext.axi` on the bus, and the build's Python driver.
 
-It knows nothing of the compiler: the file named by `FRAMES` holds the path of the driver, the name of its class,
-and three frames: heights, the lines to be sent, and those that have to come, as `sim.stream_bench` has them.
+It knows nothing of the compiler: the file named by `FRAMES` holds the path of the driver, the name of its
+class, and three frames: heights, the lines to be sent, and those that have to come, as `sim.stream_bench` has
+them.
 """
 
 import importlib.util

@@ -11,7 +11,6 @@ from amaranth.lib.wiring import In, Out
 from hdl_templates.adder import sum_network
 from hdl_templates.engine import MatchEngine
 from hdl_templates.hierarchy import Part, place
-from hdl_templates.ip import EngineIp, VideoIp
 from hdl_templates.lookup import draw_network, unread_inputs
 from hdl_templates.matcher import draw_match
 from hdl_templates.ports import named, tie_off
@@ -21,7 +20,6 @@ from wnn2hdl.ir import LutNetwork, Neighbourhood, Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
-from wnn2hdl.ir.registers import RegisterMap
 from wnn2hdl.ir.wires import Word, single_bits, width_of
 
 _FLIP_FLOPS = {"keep": "true", "shreg_extract": "no"}
@@ -77,11 +75,6 @@ def video_core(
     return VideoCore(video=video, pixels=pixels, windows=windows, neighbours=neighbours, classes=classes)
 
 
-def video_ip(circuit: Circuit, video: VideoFormat, registers: RegisterMap, *, style: Style) -> VideoIp:
-    """The hardware of a video core with registers; otherwise as `video_core`."""
-    return VideoIp(core=video_core(circuit, video, style=style), registers=registers)
-
-
 def match_engine(circuit: Circuit, engine: EngineFormat, *, style: Style) -> MatchEngine:
     """The hardware of a match engine.
 
@@ -92,11 +85,6 @@ def match_engine(circuit: Circuit, engine: EngineFormat, *, style: Style) -> Mat
     """
     (lane,) = (node.circuit for node in circuit.nodes if isinstance(node, Instance))
     return MatchEngine(engine=engine, lane=lambda: component(lane, style=style))
-
-
-def engine_ip(circuit: Circuit, engine: EngineFormat, registers: RegisterMap, *, style: Style) -> EngineIp:
-    """The hardware of a match engine with registers; otherwise as `match_engine`."""
-    return EngineIp(core=match_engine(circuit, engine, style=style), registers=registers)
 
 
 class CircuitComponent(Part):

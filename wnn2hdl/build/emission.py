@@ -8,7 +8,9 @@ from typing import Any
 from amaranth.lib.wiring import In, Out
 
 from hdl_templates import sobel
+from hdl_templates.engine import MatchEngine
 from hdl_templates.hierarchy import Part
+from hdl_templates.ip import EngineIp, VideoIp
 from hdl_templates.sobel_video import SobelCore
 from hdl_templates.video import VideoCore
 from wnn2hdl import elaborate
@@ -92,12 +94,12 @@ class Files:
 
 def outermost_part(design: Design) -> Part:
     """The hardware of a design, of a core with its registers."""
-    if design.registers is None:
-        return top_part(design)
-    if design.engine is not None:
-        return elaborate.engine_ip(design.top, design.engine, design.registers, style=design.style)
-    assert design.video is not None
-    return elaborate.video_ip(design.top, design.video, design.registers, style=design.style)
+    core, registers = top_part(design), design.registers
+    if isinstance(core, VideoCore) and registers is not None:
+        return VideoIp(core=core, registers=registers)
+    if isinstance(core, MatchEngine) and registers is not None:
+        return EngineIp(core=core, registers=registers)
+    return core
 
 
 def top_part(design: Design) -> Part:

@@ -292,7 +292,7 @@ def test_a_picture_through_a_core_of_neighbourhoods_is_classified_as_by_its_mode
     )
     build = compile_model(neighbours, tmp_path / "near", options, silent)
     assert build.failure is None
-    assert list(build.report["parts"]) == ["taps", "decision", "edge", "video", "sobel"]
+    assert list(build.report["parts"]) == ["taps", "decision", "edge", "video", "ip", "sobel"]
     assert [claim["part"] for claim in build.report["proof"]["claims"]][-3:] == ["taps", "decision", "edge"]
     assert build.report["proof"]["status"] == "proved"
     # A care set knows the whole picture with its borders, but not those of a crop.

@@ -19,10 +19,12 @@ from wnn2hdl.apps.navigation.poses import frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, poses_of
 from wnn2hdl.apps.navigation.weightless import GSD_M, by_rule
 from wnn2hdl.apps.navigation.world import WorldMap
+from hdl_templates.ip import EngineIp
 from wnn2hdl.elaborate import match_engine
 from wnn2hdl.emit import cells_model, engine_testbench, engine_vectors, verilog
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir.engine import EngineFormat, Round
+from wnn2hdl.ir.registers import engine_registers
 from wnn2hdl.lower.deforestation import engine as engine_circuit
 from wnn2hdl.lower.deforestation import lane
 from wnn2hdl.samples.flight import make_flight
@@ -79,24 +81,26 @@ def test_the_verilog_names_the_places_that_locate_names(tmp_path: Path) -> None:
     circuit = engine_circuit(lane(engine.columns))
     circuit = pipelined(circuit, for_clock(circuit, 100.0))
     core = match_engine(circuit, engine, style="cells")
+    registers = engine_registers(engine, "0" * 64)
     bench = engine_testbench(
-        name="my_engine",
+        name="my_ip",
         engine=engine,
         cycles=engine.cycles(core.lanes[0].latency),
         rounds=rounds,
+        registers=registers,
         vectors_file="vectors.hex",
         sources=["my.v"],
     )
     texts = {
-        "my.v": verilog(core, prefix="my_", header=[]),
+        "my.v": verilog(EngineIp(core=core, registers=registers), prefix="my_", header=[]),
         "cells.v": cells_model(),
-        "my_engine_tb.v": bench,
+        "my_ip_tb.v": bench,
         "vectors.hex": engine_vectors(engine, rounds),
     }
     for name, text in texts.items():
         (tmp_path / name).write_text(text)
     sources = [tmp_path / name for name in texts if name.endswith(".v")]
-    assert "PASS" in run_verilator(sources, "my_engine_tb", cwd=tmp_path, timeout=300).output
+    assert "PASS" in run_verilator(sources, "my_ip_tb", cwd=tmp_path, timeout=300).output
 
 
 @pytest.mark.realdata
