@@ -63,8 +63,7 @@ def arrivals(m: Module, beat: Beat, *, height: Value, longest: int, width: int |
     is_open, first = Signal(name="open"), Signal(name="first_line", reset_less=True)
     column, ends_at = (Signal(bits, name=name, reset_less=True) for name in ("column", "ends_at"))
     at = Signal(bits, name="column_at")
-    lines = Signal(len(height), name="lines", reset_less=True)
-    before, line = Signal(len(height), name="lines_before"), Signal(len(height), name="line")
+    last_line = countdown(m, "lines_to_come", beat, height)
     names = ("begins", "runs", "learns", "fault", "whole", "malformed_now")
     begins, runs, learns, fault, whole, malformed = (Signal(name=name) for name in names)
     at_end = Signal(name="at_end")
@@ -72,18 +71,15 @@ def arrivals(m: Module, beat: Beat, *, height: Value, longest: int, width: int |
         begins.eq(beat.taken & beat.start),
         runs.eq(beat.taken & (beat.start | is_open)),
         at.eq(Mux(beat.start, 0, column)),
-        before.eq(Mux(beat.start, 0, lines)),
-        line.eq(before + 1),
         learns.eq(beat.start | first if width is None else 0),
         at_end.eq(at == (Mux(learns, longest - 1, ends_at) if width is None else width - 1)),
         fault.eq((beat.last ^ at_end) & ~(learns & beat.last)),
-        whole.eq(runs & ~fault & beat.last & (line == height)),
+        whole.eq(runs & ~fault & beat.last & last_line),
         malformed.eq((runs & fault) | (begins & is_open)),
     ]
     with m.If(beat.taken):
         m.d.sync += [
             column.eq(Mux(beat.last, 0, at + 1)),
-            lines.eq(Mux(beat.last, line, before)),
             first.eq(learns & ~beat.last),
         ]
     with m.If(runs):
@@ -91,6 +87,21 @@ def arrivals(m: Module, beat: Beat, *, height: Value, longest: int, width: int |
     with m.If(runs & learns & beat.last):
         m.d.sync += ends_at.eq(at)
     return Arrivals(is_open, begins, whole, malformed, ends_at + 1)
+
+
+def countdown(m: Module, name: str, beat: Beat, height: Value) -> Value:
+    """Count the lines of pictures; whether the beat belongs to the last one of its picture.
+
+    Args:
+        m: the module under construction.
+        name: of the register.
+        beat: what passes.
+        height: lines of the picture that begins with the beat; 0 as of `arrivals`.
+    """
+    lines = Signal(len(height), name=name, reset_less=True)
+    with m.If(beat.taken):
+        m.d.sync += lines.eq(Mux(beat.start, height, lines) - beat.last)
+    return Mux(beat.start, height == 1, lines == 1)
 
 
 def counted(m: Module, count: Signal, event: Value) -> None:

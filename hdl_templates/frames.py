@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from amaranth.hdl import Cat, Const, Module, Mux, ResetInserter, Signal
+from amaranth.hdl import Cat, Const, Module, ResetInserter, Signal
 from amaranth.lib.wiring import In, Out
 
-from hdl_templates.arrivals import arrivals, counted, later
+from hdl_templates.arrivals import arrivals, countdown, counted, later
 from hdl_templates.hierarchy import Part
 from wnn2hdl.ir.registers import COUNT_BITS, DATA_BITS
 from wnn2hdl.ir.video import HEIGHT_BITS, WIDTH_BITS
@@ -19,8 +19,8 @@ class FrameControl(Part):
 
     A frame's first beat is held back while the core is not enabled, and for a few cycles where the height has
     changed. The height of a frame that is in the core is kept: another one is given to the core while the
-    first beat of a frame waits. So where heights change, frames have to have more lines than the core keeps, or
-    one frame may be counted wrongly.
+    first beat of a frame waits. So where heights change, frames have to have more lines than the core keeps,
+    or one frame may be counted wrongly.
 
     Args:
         pixels: of a beat, a power of two.
@@ -107,23 +107,10 @@ class FrameControl(Part):
     def _answered(self, m: Module) -> Signal:
         """Whether the last answer of a frame was taken, a cycle ago."""
         gone = later(m, "gone", taken=self.m_tvalid & self.m_tready, start=self.m_tuser, last=self.m_tlast)
+        # The height is taken along: the next frame may have another one, and have begun already.
+        last_line = countdown(m, "lines_to_go", gone, self.frame_height)
         leaves, ends = Signal(name="leaves"), Signal(name="ends")
-        # The next frame may have another height, and have begun already.
-        kept = Signal(HEIGHT_BITS, name="kept_height", reset_less=True)
-        lines = Signal(HEIGHT_BITS, name="lines_left", reset_less=True)
-        height, before, line = (
-            Signal(HEIGHT_BITS, name=f"leaving_{x}") for x in ("height", "before", "line")
-        )
-        m.d.comb += [
-            height.eq(Mux(gone.start, self.frame_height, kept)),
-            before.eq(Mux(gone.start, 0, lines)),
-            line.eq(before + 1),
-            ends.eq(gone.taken & gone.last & (gone.start | leaves) & (line == height)),
-        ]
+        m.d.comb += ends.eq(gone.taken & gone.last & (gone.start | leaves) & last_line)
         with m.If(gone.taken):
-            m.d.sync += [
-                kept.eq(height),
-                lines.eq(Mux(gone.last, line, before)),
-                leaves.eq((gone.start | leaves) & ~ends),
-            ]
+            m.d.sync += leaves.eq((gone.start | leaves) & ~ends)
         return ends

@@ -1,8 +1,8 @@
 """Properties of a video core and of its registers, from reset on, by ABC: for all time, or the first cycles.
 
 The core is the shell of a video core around circuits of no logic, with lines of up to four pixels, as
-``video_properties.v`` wants it. Its streams do whatever that file allows. The registers are those of a video core,
-whose bus does whatever ``bus_properties.v`` allows.
+``video_properties.v`` wants it. Its streams do whatever that file allows. The registers are those of a video
+core, whose bus does whatever ``bus_properties.v`` allows.
 """
 
 import re
@@ -23,9 +23,9 @@ ALWAYS: frozenset[Property] = frozenset({"stays", "goes_on"})
 
 BusProperty = Literal["stays", "answers", "refuses", "goes_on", "keeps"]
 """All for all time: an answer stays until it is taken; each request has one, and no request is taken before
-the answer to the one before is; those to addresses without a register, or that can only be read, are errors; a
-request is taken in bounded time; what is written is kept byte by byte and read, and so are events until they
-are cleared, and they interrupt.
+the answer to the one before is; those to addresses without a register, or that can only be read, are errors;
+a request is taken in bounded time; what is written is kept byte by byte and read, and events are until they
+are cleared, and interrupt.
 """
 
 CYCLES = 16

@@ -57,7 +57,7 @@ def test_registers_are_used_while_frames_run(text: str, simulator: SimulatorName
         # An address without a register is none.
         ("s_axi_control_rresp <= 2'h2", "s_axi_control_rresp <= 2'h0"),
         # Frames of a height are malformed.
-        ("line == frame_height", "line != frame_height"),
+        ("whole = runs & ~fault", "whole = runs & fault"),
     ],
 )
 def test_wrong_registers_are_found(text: str, right: str, wrong: str, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from hdl_templates.ip import EngineIp
 from wnn2hdl.apps.navigation.camera import Camera
 from wnn2hdl.apps.navigation.geometry import ground_patch
 from wnn2hdl.apps.navigation.grid import MapGrid
@@ -19,7 +20,6 @@ from wnn2hdl.apps.navigation.poses import frame_files, read_poses
 from wnn2hdl.apps.navigation.recording import Recording, poses_of
 from wnn2hdl.apps.navigation.weightless import GSD_M, by_rule
 from wnn2hdl.apps.navigation.world import WorldMap
-from hdl_templates.ip import EngineIp
 from wnn2hdl.elaborate import match_engine
 from wnn2hdl.emit import cells_model, engine_testbench, engine_vectors, verilog
 from wnn2hdl.errors import InputError
