@@ -11,6 +11,7 @@ from amaranth.lib.wiring import In, Out
 from hdl_templates.adder import sum_network
 from hdl_templates.engine import MatchEngine
 from hdl_templates.hierarchy import Part, place
+from hdl_templates.ip import EngineIp, VideoIp
 from hdl_templates.lookup import draw_network, unread_inputs
 from hdl_templates.matcher import draw_match
 from hdl_templates.ports import named, tie_off
@@ -20,6 +21,7 @@ from wnn2hdl.ir import LutNetwork, Neighbourhood, Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
+from wnn2hdl.ir.registers import RegisterMap
 from wnn2hdl.ir.wires import Word, single_bits, width_of
 
 _FLIP_FLOPS = {"keep": "true", "shreg_extract": "no"}
@@ -85,6 +87,14 @@ def match_engine(circuit: Circuit, engine: EngineFormat, *, style: Style) -> Mat
     """
     (lane,) = (node.circuit for node in circuit.nodes if isinstance(node, Instance))
     return MatchEngine(engine=engine, lane=lambda: component(lane, style=style))
+
+
+def with_registers(core: Part, registers: RegisterMap) -> Part:
+    """A video core or a match engine with its registers around it."""
+    if isinstance(core, VideoCore):
+        return VideoIp(core=core, registers=registers)
+    assert isinstance(core, MatchEngine)
+    return EngineIp(core=core, registers=registers)
 
 
 class CircuitComponent(Part):

@@ -8,11 +8,8 @@ from typing import Any
 from amaranth.lib.wiring import In, Out
 
 from hdl_templates import sobel
-from hdl_templates.engine import MatchEngine
 from hdl_templates.hierarchy import Part
-from hdl_templates.ip import EngineIp, VideoIp
 from hdl_templates.sobel_video import SobelCore
-from hdl_templates.video import VideoCore
 from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.streaming import sample_frames
@@ -94,12 +91,8 @@ class Files:
 
 def outermost_part(design: Design) -> Part:
     """The hardware of a design, of a core with its registers."""
-    core, registers = top_part(design), design.registers
-    if isinstance(core, VideoCore) and registers is not None:
-        return VideoIp(core=core, registers=registers)
-    if isinstance(core, MatchEngine) and registers is not None:
-        return EngineIp(core=core, registers=registers)
-    return core
+    part, registers = top_part(design), design.registers
+    return part if registers is None else elaborate.with_registers(part, registers)
 
 
 def top_part(design: Design) -> Part:
