@@ -10,6 +10,7 @@ from amaranth.lib.wiring import In, Out
 from hdl_templates import sobel
 from hdl_templates.hierarchy import Part
 from hdl_templates.sobel_video import SobelCore
+from hdl_templates.video import VideoCore
 from wnn2hdl import elaborate
 from wnn2hdl.build.design import Design
 from wnn2hdl.build.streaming import sample_frames

@@ -141,6 +141,7 @@ def core_scripts(
             part=PART,
             clock=ports.clock,
             pixel_bits=ports.inputs["s_axis_video_tdata"],
+            has_squares="m_axis_squares_tdata" in ports.outputs,
             megahertz=megahertz,
         )
     return scripts

@@ -40,8 +40,9 @@ apply_bd_automation -rule xilinx.com:bd_rule:axi4 \\
     -config {{Master /vdma/M_AXI_MM2S Clk /ps7/FCLK_CLK0}} [get_bd_intf_pins ps7/S_AXI_HP0]
 apply_bd_automation -rule xilinx.com:bd_rule:axi4 \\
     -config {{Slave /ps7/S_AXI_HP0 Clk /ps7/FCLK_CLK0}} [get_bd_intf_pins vdma/M_AXI_S2MM]
+{squares}\
 # What the automation has left without a clock or a reset.
-foreach pin {{core/{clock} vdma/m_axis_mm2s_aclk vdma/s_axis_s2mm_aclk}} {{
+foreach pin {{core/{clock} vdma/m_axis_mm2s_aclk vdma/s_axis_s2mm_aclk{clocked}}} {{
     if {{[llength [get_bd_nets -quiet -of_objects [get_bd_pins $pin]]] == 0}} {{
         connect_bd_net [get_bd_pins ps7/FCLK_CLK0] [get_bd_pins $pin]
     }}
@@ -53,12 +54,13 @@ if {{[llength [get_bd_nets -quiet -of_objects [get_bd_pins core/aresetn]]] == 0}
     connect_bd_net [get_bd_pins reset/peripheral_aresetn] [get_bd_pins core/aresetn]
 }}
 
-# Interrupts of the core, and of the VDMA when a frame was read and written.
+# Interrupts of the core, and of VDMAs when a frame was read and written.
 create_bd_cell -type ip -vlnv xilinx.com:ip:xlconcat interrupts
-set_property CONFIG.NUM_PORTS {{3}} [get_bd_cells interrupts]
-connect_bd_net [get_bd_pins core/irq] [get_bd_pins interrupts/In0]
-connect_bd_net [get_bd_pins vdma/mm2s_introut] [get_bd_pins interrupts/In1]
-connect_bd_net [get_bd_pins vdma/s2mm_introut] [get_bd_pins interrupts/In2]
+set interrupts {{core/irq vdma/mm2s_introut vdma/s2mm_introut{interrupts}}}
+set_property CONFIG.NUM_PORTS [llength $interrupts] [get_bd_cells interrupts]
+foreach pin $interrupts {{
+    connect_bd_net [get_bd_pins $pin] [get_bd_pins interrupts/In[lsearch $interrupts $pin]]
+}}
 connect_bd_net [get_bd_pins interrupts/dout] [get_bd_pins ps7/IRQ_F2P]
 
 assign_bd_address
@@ -69,8 +71,33 @@ update_compile_order -fileset sources_1
 """
 
 
+_SQUARES = """\
+# Majorities of squares go to memory by a VDMA of their own.
+create_bd_cell -type ip -vlnv xilinx.com:ip:axi_vdma squares
+set_property -dict [list \\
+    CONFIG.c_include_mm2s {0} \\
+    CONFIG.c_num_fstores {3} \\
+    CONFIG.c_use_s2mm_fsync {2} \\
+] [get_bd_cells squares]
+connect_bd_intf_net [get_bd_intf_pins core/m_axis_squares] [get_bd_intf_pins squares/S_AXIS_S2MM]
+apply_bd_automation -rule xilinx.com:bd_rule:axi4 \\
+    -config {Master /ps7/M_AXI_GP0 Clk /ps7/FCLK_CLK0} [get_bd_intf_pins squares/S_AXI_LITE]
+apply_bd_automation -rule xilinx.com:bd_rule:axi4 \\
+    -config {Slave /ps7/S_AXI_HP0 Clk /ps7/FCLK_CLK0} [get_bd_intf_pins squares/M_AXI_S2MM]
+"""
+
+
 def block_design(
-    top: str, *, vlnv: str, here: str, package: str, part: str, clock: str, pixel_bits: int, megahertz: float
+    top: str,
+    *,
+    vlnv: str,
+    here: str,
+    package: str,
+    part: str,
+    clock: str,
+    pixel_bits: int,
+    has_squares: bool,
+    megahertz: float,
 ) -> str:
     """The script of a block design.
 
@@ -82,6 +109,7 @@ def block_design(
         part: the device.
         clock: the core's port of its clock.
         pixel_bits: of a beat of the stream of pixels.
+        has_squares: whether the core sends majorities of squares.
         megahertz: the clock that the processing system gives.
     """
     return _BLOCK_DESIGN.format(
@@ -92,5 +120,8 @@ def block_design(
         part=part,
         clock=clock,
         pixel_bits=pixel_bits,
+        squares=_SQUARES if has_squares else "",
+        clocked=" squares/s_axis_s2mm_aclk" if has_squares else "",
+        interrupts=" squares/s2mm_introut" if has_squares else "",
         megahertz=f"{megahertz:g}",
     )

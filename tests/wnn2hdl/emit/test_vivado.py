@@ -75,6 +75,17 @@ def test_a_core_gets_a_block_design_with_its_widths(tmp_path: Path) -> None:
 
 
 @needs_tcl
+def test_squares_go_to_memory_by_a_vdma_of_their_own(tmp_path: Path) -> None:
+    ports = Ports(CORE.inputs, {**CORE.outputs, "m_axis_squares_tdata": 8}, clock="aclk")
+    registers = video_registers(DIGEST)
+    write(tmp_path, core_scripts("mine_ip", ports, registers, source="mine.v", megahertz=148.5))
+    shown = calls(tmp_path / BLOCK_DESIGN, *PINS, "m_axis_squares")
+    assert "CALL connect_bd_intf_net {} {core/m_axis_squares squares/S_AXIS_S2MM}" in shown
+    assert "CALL connect_bd_net {} {squares/s2mm_introut interrupts/In3}" in shown
+    assert "squares" not in video_scripts()[BLOCK_DESIGN]
+
+
+@needs_tcl
 def test_the_package_has_all_registers_with_their_fields(tmp_path: Path) -> None:
     write(tmp_path, video_scripts())
     shown = calls(tmp_path / PACKAGE, *PINS)

@@ -67,7 +67,7 @@ set ip {
         CONFIG.c_s2mm_linebuffer_depth CONFIG.c_use_s2mm_fsync CONFIG.c_include_mm2s CONFIG.c_include_s2mm
     }
     xilinx.com:ip:proc_sys_reset {slowest_sync_clk ext_reset_in aux_reset_in peripheral_aresetn interconnect_aresetn}
-    xilinx.com:ip:xlconcat {In0 In1 In2 dout CONFIG.NUM_PORTS}
+    xilinx.com:ip:xlconcat {In0 In1 In2 In3 dout CONFIG.NUM_PORTS}
 }
 set cells {}
 # The properties of what a package holds (IEEE 1685), and the values of some of them.
