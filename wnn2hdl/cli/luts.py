@@ -157,6 +157,14 @@ def luts_sentence(summary: dict[str, Any]) -> str:
         )
     elif summary["validation"] is not None:
         validated = f"accuracy {summary['validation']:.4f} on rows kept for validation"
+    steps = ""
+    if summary["steps"]:
+        learned, dropped, again = summary["steps"]
+        steps = (
+            f"\n{learned['accuracy']:.4f} with {learned['nodes_per_class']} tables for each class, "
+            f"{dropped['accuracy']:.4f} with the best {dropped['nodes_per_class']}, "
+            f"{again['accuracy']:.4f} when these were trained again"
+        )
     front = "".join(
         f"\n{point['luts']} LUTs: {point['accuracy']:.2%} in validation, {point['method']}, {point['model']}"
         for point in summary.get("front", ())
@@ -165,5 +173,5 @@ def luts_sentence(summary: dict[str, Any]) -> str:
         f"{summary['model']}: {len(summary['classes'])} classes, {summary['luts']} LUTs in all\n"
         f"{summary['nodes']} tables of 6 inputs over {summary['input_bits']} bits of {summary['features']} "
         f"features, words of {summary['input']}\n"
-        f"{summary['epochs']} epochs on {summary['rows']} rows, {validated}{front}"
+        f"{summary['epochs']} epochs on {summary['rows']} rows, {validated}{steps}{front}"
     )

@@ -44,6 +44,7 @@ def test_a_network_fits_its_budget_and_is_measured_and_can_be_made_again(
     )
     done = run("train", "--table", pictures, *words, "-o", tmp_path / "again.json")
     assert f"2 classes, {data['luts']} LUTs in all" in done.stdout
+    assert f"with the best {data['nodes_per_class']}, {data['validation']:.4f} when these" in done.stdout
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "m.json").read_bytes()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["again.json", "m.json", "pictures.npz"]
 

@@ -69,6 +69,8 @@ class Trained:
         epochs: that were trained.
         nodes: for each class.
         luts: of the whole network, as counted; None without a budget.
+        steps: nodes for each class and accuracy in validation, when wiring and tables were learned, when
+            nodes were dropped, and when the tables of the others were learned again; empty without validation.
     """
 
     model: LutGroupModel
@@ -76,6 +78,7 @@ class Trained:
     epochs: int
     nodes: int
     luts: int | None
+    steps: tuple[tuple[int, float], ...] = ()
     teacher: Teacher | None = None
 
 
@@ -132,7 +135,9 @@ def train_network(
     progress("training", training.epoch, recipe.epochs)
     while not training.finished:
         if training.wiring and training.epoch >= recipe.wiring_epochs:
+            training.note(validation)
             training.freeze(_fitted(training, budget))
+            training.note(validation)
         training.run_epoch()
         if not training.wiring:
             training.validate(validation)
@@ -140,6 +145,7 @@ def train_network(
             saved.write(training.arrays())
         progress("training", training.epoch, recipe.epochs)
     training.take_best()
+    training.note(validation)
     layer = _fitted(training, budget)
     right = float((layer.predict(validation[0]) == validation[1]).mean()) if len(kept) else None
     trained = Trained(
@@ -148,6 +154,7 @@ def train_network(
         training.epoch,
         layer.nodes_per_class,
         None if budget is None else budget.luts(layer),
+        tuple(training.steps),
         teacher,
     )
     if saved is not None:

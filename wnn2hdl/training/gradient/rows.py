@@ -75,6 +75,7 @@ def train_rows(
         "nodes_per_class": trained.nodes,
         "seed": seed,
         "rows": len(rows.labels),
+        "steps": [{"nodes_per_class": nodes, "accuracy": right} for nodes, right in trained.steps],
     }
     if trained.teacher is not None:
         figures |= {

@@ -109,6 +109,7 @@ class Training:
         epoch: how many are finished.
         best: the highest accuracy in validation in the second phase, 0 to 1; -1 before.
         best_epoch: when it was reached.
+        steps: what `note` found so far: nodes for each class and accuracy.
     """
 
     def __init__(
@@ -133,6 +134,7 @@ class Training:
         self.epoch = 0
         self.best, self.best_epoch = -1.0, 0
         self._best_weights: NDArray[np.float32] | None = None
+        self.steps: list[tuple[int, float]] = []
 
     @property
     def wiring(self) -> bool:
@@ -184,10 +186,18 @@ class Training:
         heat = temperature(self.layer.nodes_per_class, self._recipe.heat)
         return node_effects(self.layer, rows, labels, heat)
 
+    def note(self, validation: Batch) -> None:
+        """Remember how accurate the layer is at this step, if there are samples to tell."""
+        if len(validation[1]):
+            self.steps.append((self.layer.nodes_per_class, self._accuracy(validation)))
+
+    def _accuracy(self, validation: Batch) -> float:
+        rows, labels = validation
+        return float((self.layer.predict(rows) == labels).mean()) if len(labels) else 0.0
+
     def validate(self, validation: Batch) -> None:
         """Keep the weights if none were better in validation; without samples there, the last ones are."""
-        rows, labels = validation
-        right = float((self.layer.predict(rows) == labels).mean()) if len(labels) else 0.0
+        right = self._accuracy(validation)
         if right >= self.best:
             self.best, self.best_epoch, self._best_weights = right, self.epoch, self.layer.weights.copy()
 
@@ -202,6 +212,7 @@ class Training:
         arrays: dict[str, NDArray[Any]] = {
             "numbers": numbers,
             "best": np.array(self.best),
+            "steps": np.array(self.steps, dtype=np.float64).reshape(-1, 2),
             "mapping": self.layer.mapping,
             "weights": self.layer.weights,
         }
@@ -217,6 +228,7 @@ class Training:
         """Go on from `arrays` of a training of the same recipe and samples."""
         self.epoch, self._step, self.best_epoch = (int(number) for number in arrays["numbers"])
         self.best, self._best_weights = float(arrays["best"]), arrays.get("best_weights")
+        self.steps = [(int(nodes), float(right)) for nodes, right in arrays["steps"]]
         self.layer = replace(self.layer, mapping=arrays["mapping"], weights=arrays["weights"])
         self._by_weight = _adam(arrays, "by_weight")
         self._scores = arrays.get("scores")

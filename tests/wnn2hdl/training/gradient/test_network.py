@@ -43,6 +43,9 @@ def test_a_network_learns_and_says_how_well() -> None:
     assert found.validation is not None
     assert 0.85 < found.validation <= 1
     assert (found.nodes, found.luts) == (5, None)
+    assert [nodes for nodes, _ in found.steps] == [5, 5, 5]
+    assert found.steps[-1][1] == found.validation
+    assert found.steps[0] == found.steps[1]  # nothing was dropped
     assert found.model.classes == CLASSES
 
 
@@ -53,11 +56,13 @@ def test_a_budget_is_kept_and_used() -> None:
     assert 20 < found.luts <= 30
     assert found.luts == network_luts(found.model)
     assert found.model.layers[-1].nodes == 3 * found.nodes
+    before, dropped, again = found.steps
+    assert before[0] > dropped[0] == again[0]
 
 
 def test_without_validation_all_epochs_are_trained_on_all_samples() -> None:
     found = trained(Architecture(WORDS, nodes=2, validation=0), Recipe(epochs=5, patience=0.2))
-    assert (found.validation, found.epochs) == (None, 5)
+    assert (found.validation, found.epochs, found.steps) == (None, 5, ())
 
 
 def test_distorted_pictures_give_another_network() -> None:
@@ -90,6 +95,7 @@ def test_a_killed_training_goes_on_and_gives_the_same_network(
     )
     assert begun[0] == killed_after
     assert again.model.digest() == whole.model.digest()
+    assert again.steps == whole.steps
     assert not state.exists()
 
 
