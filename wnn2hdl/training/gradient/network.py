@@ -70,7 +70,7 @@ class Trained:
         nodes: for each class.
         luts: of the whole network, as counted; None without a budget.
         steps: nodes for each class and accuracy in validation, when wiring and tables were learned, when
-            nodes were dropped, and when the tables of the others were learned again; empty without validation.
+            nodes were dropped, and when the tables of the others were learned again; none without validation.
     """
 
     model: LutGroupModel
