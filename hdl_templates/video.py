@@ -27,7 +27,8 @@ from typing import Any
 from amaranth.hdl import Cat, Const, Module, ResetInserter, Signal, Value
 from amaranth.lib.wiring import In, Out
 
-from hdl_templates.across import across
+from hdl_templates.across import Windows, across
+from hdl_templates.counting import Counted, Counting, count_around
 from hdl_templates.hierarchy import Part, place
 from hdl_templates.interfaces import vivado_interfaces
 from hdl_templates.scan import Pixels, scan
@@ -102,7 +103,7 @@ class VideoCore(Part):
         video: VideoFormat,
         pixels: Sequence[Part],
         windows: Sequence[Part],
-        neighbours: Neighbours | None = None,
+        neighbours: Neighbours | Counting | None = None,
         classes: int = 2,
     ) -> None:
         wanted = video.pixels_per_clock
@@ -193,12 +194,12 @@ class VideoCore(Part):
         m: Module,
         pixels: Pixels,
         taken: Signal,
-        neighbours: Neighbours,
+        neighbours: Neighbours | Counting,
         reset: Value,
         platform: object,
     ) -> tuple[Pixels, Signal]:
         """The classes of pixels by what was found of them and their neighbours, and who is to take them."""
-        reach, moves = neighbours.size // 2, Signal(name="near_moves")
+        reach, advances = neighbours.size // 2, Signal(name="near_advances")
         columns = scan(
             m,
             "near_",
@@ -208,9 +209,19 @@ class VideoCore(Part):
             places=self.places,
             height=self.height,
             reset=reset,
-            moves=moves,
+            moves=advances,
             taken=taken,
         )
+        moves = Signal(name="near_moves")
+        if isinstance(neighbours, Counting):
+            counted = count_around(
+                m, "near_", columns, neighbours, advances=advances, moves=moves, platform=platform
+            )
+            (part,) = neighbours.parts
+            place(m, "decision", part, platform)
+            m.d.comb += _input(part).eq(Cat(counted.own, *counted.counts))
+            return self._classes(m, counted, neighbours.parts, moves)
+        m.d.comb += advances.eq(moves)
         seen = neighbours.seen
         words = [Cat(*(bits[bit][line] for bit, line in seen)) for bits in columns.bits]
         found = across(m, "near_", columns, words, (), reach=reach, moves=moves)
@@ -220,7 +231,13 @@ class VideoCore(Part):
                 window[column][seen.index((bit, 2 * reach - row))] for bit, row, column in neighbours.taps
             ]
             m.d.comb += _input(part).eq(Cat(*code))
-        latency = neighbours.parts[0].latency
+        return self._classes(m, found, neighbours.parts, moves)
+
+    def _classes(
+        self, m: Module, found: Windows | Counted, parts: Sequence[Part], moves: Signal
+    ) -> tuple[Pixels, Signal]:
+        """The queue of classes, and who is to take them."""
+        latency = parts[0].latency
         marks = _delayed(m, "classes", latency, found.start, found.last, found.final)
         leaves = Signal(name="classes_taken")
         head = queued(
@@ -228,12 +245,12 @@ class VideoCore(Part):
             "classes",
             valid=found.valid,
             ready=moves,
-            word=Cat(*marks, *map(_output, neighbours.parts)),
+            word=Cat(*marks, *map(_output, parts)),
             latency=latency,
             taken=leaves,
         )
         start, last, final = head.word[:3]
-        return Pixels(head.valid, start, last, final, _split(head.word[3:], neighbours.parts)), leaves
+        return Pixels(head.valid, start, last, final, _split(head.word[3:], parts)), leaves
 
     def _vote(self, m: Module, beat: Pixels, room: Value) -> Value:
         """Let squares count a beat that is offered; returns whether they can."""

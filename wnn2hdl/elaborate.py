@@ -9,6 +9,7 @@ from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib.wiring import In, Out
 
 from hdl_templates.adder import sum_network
+from hdl_templates.counting import Counting
 from hdl_templates.engine import MatchEngine
 from hdl_templates.hierarchy import Part, place
 from hdl_templates.ip import EngineIp, VideoIp
@@ -17,7 +18,7 @@ from hdl_templates.matcher import draw_match
 from hdl_templates.ports import named, tie_off
 from hdl_templates.video import Neighbours, VideoCore
 from hdl_templates.winner import winner_network
-from wnn2hdl.ir import LutNetwork, Neighbourhood, Style, VideoFormat
+from wnn2hdl.ir import Context, LutNetwork, Neighbourhood, Style, VideoFormat
 from wnn2hdl.ir.circuit import Circuit, Instance, Node
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.nodes import ArgMax, Match, Register, Sum, Table, Threshold
@@ -46,7 +47,7 @@ def component(circuit: Circuit, *, style: Style) -> "CircuitComponent":
 def video_core(
     circuit: Circuit,
     video: VideoFormat,
-    neighbourhood: Neighbourhood | None,
+    surroundings: Neighbourhood | Context | None,
     *,
     classes: int,
     style: Style,
@@ -56,7 +57,7 @@ def video_core(
     Args:
         circuit: the circuits of the core, see `wnn2hdl.lower.deforestation.video`.
         video: its streams.
-        neighbourhood: what its model looks at around a pixel; None of a model of single pixels.
+        surroundings: what its model looks at around a pixel; None of a model of single pixels.
         classes: how many classes there are.
         style: how its LUT networks are written.
     """
@@ -69,11 +70,15 @@ def video_core(
         ]
         for name in ("classifier", "decision", "window")
     )
-    neighbours = None
-    if neighbourhood is not None:
-        places = zip(neighbourhood.sources, neighbourhood.taps, strict=True)
+    neighbours: Neighbours | Counting | None = None
+    if isinstance(surroundings, Neighbourhood):
+        places = zip(surroundings.sources, surroundings.taps, strict=True)
         taps = [(source, tap.row, tap.column) for source, tap in places]
-        neighbours = Neighbours(neighbourhood.size, taps, decisions)
+        neighbours = Neighbours(surroundings.size, taps, decisions)
+    elif surroundings is not None:
+        sums = [(surroundings.planes.index(plane), size) for plane, size in surroundings.sums]
+        own, squares = ([one for one in sums if (one[1] > 1) == wide] for wide in (False, True))
+        neighbours = Counting([bit for bit, _ in own], squares, decisions)
     return VideoCore(video=video, pixels=pixels, windows=windows, neighbours=neighbours, classes=classes)
 
 

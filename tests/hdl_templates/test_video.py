@@ -119,11 +119,13 @@ def run(
     offers: float = 0.7,
     takes: float = 0.7,
     cycles: int = 0,
+    patience: int = 40,
     squares: list[Beat] | None = None,
 ) -> tuple[list[Beat], int]:
     """What comes out of a core for the beats, and after how many cycles all were taken; None is a reset.
 
-    It runs until nothing has moved for 40 cycles, or for ``cycles``. What comes of squares is put in a list.
+    It runs until nothing has moved for ``patience`` cycles, or for ``cycles``. What comes of squares is put
+    in a list.
     """
     draw = random.Random(0)
     found: list[Beat] = []
@@ -135,7 +137,7 @@ def run(
             ctx.set(dut.height, height)
         left = [None, *beats][::-1]
         offered, held, waiting, idle, cycle = False, None, None, 0, 0
-        while idle < 40 and (not cycles or cycle < cycles):
+        while idle < patience and (not cycles or cycle < cycles):
             resets = bool(left) and left[-1] is None
             if resets:
                 left.pop()

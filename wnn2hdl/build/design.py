@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError, ModelFileError
 from wnn2hdl.files import read_json, write_json
-from wnn2hdl.ir import EdgeFilter, LutNetwork, Neighbourhood, PictureEncoder, Style, VideoFormat, WisardModel
+from wnn2hdl.ir import (
+    Context,
+    EdgeFilter,
+    LutNetwork,
+    Neighbourhood,
+    PictureEncoder,
+    Style,
+    VideoFormat,
+    WisardModel,
+)
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.circuit_file import circuit_from_json, circuit_to_json
@@ -27,7 +36,7 @@ from wnn2hdl.verify.specify import care_sets, specify
 
 Mode = Literal["exact", "domain"]
 
-CLASSIFIERS = ("pixel", "neighbourhood", "decision")
+CLASSIFIERS = ("pixel", "neighbourhood", "decision", "context")
 """The circuits of which one says what a pixel is; its care set is that of the classifier."""
 
 MODEL_FILE = "model.json"
@@ -92,10 +101,10 @@ class Design:
         return self.circuit if self.stages is None else pipelined(self.circuit, self.stages)
 
     @property
-    def neighbourhood(self) -> Neighbourhood | None:
+    def surroundings(self) -> Neighbourhood | Context | None:
         """What the model looks at around a pixel; None of all other models."""
         encoder = self.model.encoder if isinstance(self.model, WisardModel) else None
-        return encoder if isinstance(encoder, Neighbourhood) else None
+        return encoder if isinstance(encoder, Neighbourhood | Context) else None
 
     @property
     def latency(self) -> int:

@@ -110,7 +110,7 @@ def video_part(design: Design) -> VideoCore:
     assert design.video is not None
     classes = len(design.picture_model.classes)
     return elaborate.video_core(
-        design.top, design.video, design.neighbourhood, classes=classes, style=design.style
+        design.top, design.video, design.surroundings, classes=classes, style=design.style
     )
 
 

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from wnn2hdl.build.design import Design
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import vote
-from wnn2hdl.ir import CHANNELS, WINDOW_BITS, Neighbourhood, bits_to_codes, codes_to_bits
+from wnn2hdl.ir import CHANNELS, WINDOW_BITS, Context, Neighbourhood, bits_to_codes, codes_to_bits
+from wnn2hdl.ir.context import box_sums
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
 from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits
 from wnn2hdl.ir.video import Beats
@@ -55,11 +56,15 @@ def framed_answers(design: Design, picture: NDArray[np.uint8]) -> Framed:
         return samples[part][1]
 
     rgb = {"rgb": pixel_bits(picture.reshape(-1, len(CHANNELS)))}
-    if design.neighbourhood is None:
+    around = design.surroundings
+    if around is None:
         found = answer("pixel", rgb)["class_bits"]
-    else:
+    elif isinstance(around, Neighbourhood):
         seen = answer("taps", rgb)["tap_bits"].reshape(*shape, -1)
-        found = answer("decision", {"code": _codes(design.neighbourhood, seen)})["class_bits"]
+        found = answer("decision", {"code": _codes(around, seen)})["class_bits"]
+    else:
+        seen = answer("planes", rgb)["plane_bits"].reshape(*shape, -1)
+        found = answer("context", {"counts": _counts(around, seen)})["class_bits"]
     classes = bits_to_codes(found).reshape(shape).astype(np.uint8)
     edges = None
     if "edge" in design.parts:
@@ -82,6 +87,20 @@ def _codes(neighbourhood: Neighbourhood, seen: Bits) -> Bits:
         for tap, source in zip(neighbourhood.taps, neighbourhood.sources, strict=True)
     ]
     return np.stack(columns, axis=1)
+
+
+def _counts(context: Context, seen: Bits) -> Bits:
+    """What is counted around all pixels, bool ``[pixels, bits of all sums]``.
+
+    Args:
+        context: the encoder.
+        seen: its planes, bool ``[height, width, planes]``.
+    """
+    words = []
+    for (plane, size), width in zip(context.sums, context.widths, strict=True):
+        framed = np.pad(seen[..., context.planes.index(plane)], size // 2, mode="edge")
+        words.append(codes_to_bits(box_sums(framed, size).ravel(), width))
+    return np.concatenate(words, axis=1)
 
 
 def beats(design: Design, pictures: Sequence[NDArray[np.uint8]]) -> Beats:
@@ -122,10 +141,11 @@ def sample_frames(design: Design) -> Beats:
 def _sample_pixels(design: Design) -> NDArray[np.uint8]:
     """Cared-for pixels, uint8 ``[pixels, 3]``: of a core of grey pixels all that are grey.
 
-    Of neighbourhoods those that the tables of single pixels tell apart.
+    Of models that look around a pixel those that the circuit of single pixels tells apart.
     """
     assert design.video is not None
-    claim = design.specification.claims["pixel" if design.neighbourhood is None else "taps"]
+    claims = design.specification.claims
+    claim = next(claims[part] for part in ("pixel", "taps", "planes") if part in claims)
     if design.video.is_mono:
         greys = np.repeat(np.arange(1 << CHANNEL_BITS, dtype=np.uint8)[:, np.newaxis], len(CHANNELS), axis=1)
         cared = claim.cared({"rgb": pixel_bits(greys)}).all(axis=1)

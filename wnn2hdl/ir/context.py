@@ -6,7 +6,7 @@ line, whatever the size of the square; each pixel is compared once.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Self
@@ -96,17 +96,18 @@ class Context(NamedBits):
     @property
     def planes(self) -> tuple[str, ...]:
         """The bits that every pixel has to have, in the order in which they are first named."""
-        return _unique(count.plane for count in self.counts)
+        return tuple(dict.fromkeys(count.plane for count in self.counts))
+
+    @cached_property
+    def sums(self) -> tuple[tuple[str, int], ...]:
+        """Plane and size of all that is compared: of the pixel alone, size 1, then of squares."""
+        found = dict.fromkeys((count.plane, count.size) for count in self.counts)
+        return tuple(sorted(found, key=lambda sum_of: sum_of[1] > 1))
 
     @property
-    def own(self) -> tuple[str, ...]:
-        """The planes of which the pixel's own bit is read."""
-        return _unique(count.plane for count in self.counts if count.size == 1)
-
-    @property
-    def squares(self) -> tuple[tuple[str, int], ...]:
-        """Plane and size of each sum that is compared with at least one threshold."""
-        return tuple(dict.fromkeys((count.plane, count.size) for count in self.counts if count.size > 1))
+    def widths(self) -> tuple[int, ...]:
+        """Bits of each of `sums`."""
+        return tuple((size * size).bit_length() for _, size in self.sums)
 
     @property
     def possible(self) -> NDArray[np.bool_]:
@@ -135,18 +136,23 @@ class Context(NamedBits):
         """
         array = np.asarray(pictures, dtype=np.uint8)
         height, width = (max(0, side - 2 * self.halo) for side in array.shape[-3:-1])
-        codes = np.zeros((*array.shape[:-3], height, width), dtype=np.uint32)
-        if not codes.size:
-            return codes
-        sums: dict[tuple[str, int], NDArray[np.int32]] = {}
+        if not height * width:
+            return np.zeros((*array.shape[:-3], height, width), dtype=np.uint32)
         planes = {name: pixel_codes((name,), array) for name in self.planes}
+        found = []
+        for plane, size in self.sums:
+            rim = self.halo - size // 2
+            inner = slice(rim, rim + height + size - 1), slice(rim, rim + width + size - 1)
+            found.append(box_sums(planes[plane][..., *inner], size))
+        return self.compared(found)
+
+    def compared(self, sums: Sequence[NDArray[np.integer]]) -> NDArray[np.uint32]:
+        """Codes of pixels whose sums are known: one array for each of `sums`, all of the codes' shape."""
+        codes = np.zeros(sums[0].shape, dtype=np.uint32)
+        places = {sum_of: place for place, sum_of in enumerate(self.sums)}
         for position, count in enumerate(self.counts):
-            key = (count.plane, count.size)
-            if key not in sums:
-                rim = self.halo - count.size // 2
-                inner = slice(rim, rim + height + count.size - 1), slice(rim, rim + width + count.size - 1)
-                sums[key] = box_sums(planes[count.plane][..., *inner], count.size)
-            codes |= (sums[key] >= count.least).astype(np.uint32) << position
+            bit = sums[places[count.plane, count.size]] >= count.least
+            codes |= bit.astype(np.uint32) << position
         return codes
 
 
@@ -169,7 +175,3 @@ def box_sums(plane: NDArray[np.generic], size: int) -> NDArray[np.int32]:
             sums[1:] -= ends[:-size]
             sums = np.moveaxis(sums, 0, axis)
     return sums
-
-
-def _unique(names: Iterable[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(names))

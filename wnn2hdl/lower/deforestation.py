@@ -5,13 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from wnn2hdl.ir import (
-    PIXEL_BIT_NAMES,
     PIXEL_BITS,
     WINDOW_BITS,
-    BitSelect,
     EdgeFilter,
     Neighbourhood,
-    PixelEncoder,
     Tap,
     TruthTable,
     WisardModel,
@@ -20,9 +17,9 @@ from wnn2hdl.ir import (
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Care, Circuit, Instance
 from wnn2hdl.ir.nodes import Match, Table
-from wnn2hdl.ir.relational import occurring, signal_name
+from wnn2hdl.ir.relational import occurring
 from wnn2hdl.ir.wires import Port, Slice, Word
-from wnn2hdl.lower.table import pixel_table
+from wnn2hdl.lower.table import pixel_code, pixel_table
 
 DECISION = "decision"
 """The table that gives the class for the code of a pixel or of a neighbourhood."""
@@ -39,7 +36,7 @@ def pixel(model: WisardModel, care: CareSet) -> Circuit:
         InputError: the model reads no pixels, or more bits than a table may have.
     """
     encoder = pixel_encoder(model)
-    comparisons, code = _encoded(encoder)
+    comparisons, code = pixel_code(encoder.names)
     decision = pixel_table(model)
     possible = occurring(encoder) & care.project(tuple(range(encoder.width)))
     table = Table(DECISION, code, decision.with_care(possible))
@@ -51,23 +48,6 @@ def pixel(model: WisardModel, care: CareSet) -> Circuit:
         {"class_bits": _all(table)},
         (Care(code, care),),
     )
-
-
-def _encoded(encoder: PixelEncoder) -> tuple[list[Table], tuple[Slice, ...]]:
-    """What makes a pixel's code of ``rgb``: a table for each comparison, and for each code bit its signal."""
-    tables: list[Table] = []
-    code: list[Slice] = []
-    for position, name in enumerate(encoder.names):
-        if isinstance(encoder, BitSelect) or position not in encoder.comparisons:
-            code.append(Slice("rgb", PIXEL_BIT_NAMES[name]))
-            continue
-        comparison = encoder.comparisons[position]
-        word = tuple(Slice("rgb", PIXEL_BIT_NAMES[bit]) for bit in comparison.bits)
-        node = signal_name(name)
-        function = TruthTable.exact(comparison.bits, (node,), comparison.table()[:, np.newaxis])
-        tables.append(Table(node, word, function))
-        code.append(Slice(node))
-    return tables, tuple(code)
 
 
 def edge(edge_filter: EdgeFilter, care: CareSet) -> Circuit:

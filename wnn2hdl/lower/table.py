@@ -1,19 +1,23 @@
 """From a model to its truth table, and from imagery to the codes the table has to care about."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
+    PIXEL_BIT_NAMES,
+    Comparison,
     PictureEncoder,
     TruthTable,
     WisardModel,
     all_codes,
     codes_to_bits,
 )
+from wnn2hdl.ir.nodes import Table
 from wnn2hdl.ir.relational import signal_name
+from wnn2hdl.ir.wires import Slice
 
 
 def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> TruthTable:
@@ -36,6 +40,30 @@ def pixel_table(model: WisardModel, care: NDArray[np.bool_] | None = None) -> Tr
     inputs = tuple(map(signal_name, model.encoder.names))
     table = TruthTable.exact(inputs, names, values)
     return table if care is None else table.with_care(care)
+
+
+def pixel_code(names: Sequence[str]) -> tuple[list[Table], tuple[Slice, ...]]:
+    """What makes bits of a pixel of the net ``rgb``.
+
+    Args:
+        names: of the bits, as in `wnn2hdl.ir.relational.Relational`.
+
+    Returns:
+        A table for each comparison, and for each bit its signal.
+    """
+    tables: list[Table] = []
+    code: list[Slice] = []
+    for name in names:
+        if name in PIXEL_BIT_NAMES:
+            code.append(Slice("rgb", PIXEL_BIT_NAMES[name]))
+            continue
+        comparison = Comparison.parse(name)
+        word = tuple(Slice("rgb", PIXEL_BIT_NAMES[bit]) for bit in comparison.bits)
+        node = signal_name(name)
+        function = TruthTable.exact(comparison.bits, (node,), comparison.table()[:, np.newaxis])
+        tables.append(Table(node, word, function))
+        code.append(Slice(node))
+    return tables, tuple(code)
 
 
 def code_histogram(encoder: PictureEncoder, images: Iterable[NDArray[np.uint8]]) -> NDArray[np.int64]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import (
     WINDOW_BITS,
+    Context,
     EdgeFilter,
     FeatureEncoder,
     Neighbourhood,
@@ -20,7 +21,7 @@ from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
 from wnn2hdl.ir.video import MAX_CLASSES
-from wnn2hdl.lower import deforestation, gates, structural, sums
+from wnn2hdl.lower import context, deforestation, gates, structural, sums
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +96,13 @@ def _video(of: Ingredients) -> Circuit:
     if isinstance(encoder, Neighbourhood):
         decision = deforestation.decision(model, of.cared("decision", encoder.width))
         circuits = {"classifier": deforestation.taps(encoder), "decision": decision}
+    elif isinstance(encoder, Context):
+        if of.video.pixels_per_clock > 1:
+            raise InputError(
+                "a core that counts around a pixel takes one pixel per clock", value=of.video.pixels_per_clock
+            )
+        counted = context.context(model, encoder, of.cared("context", encoder.width))
+        circuits = {"classifier": context.planes(encoder), "decision": counted}
     else:
         circuits = {"classifier": _pixel(of)}
     return deforestation.video(circuits | ({"window": _edge(of)} if of.video.has_edges else {}))
@@ -135,8 +143,12 @@ def _reads_neighbours(model: AnyModel) -> bool:
     return isinstance(model, WisardModel) and isinstance(model.encoder, Neighbourhood)
 
 
+def _counts(model: AnyModel) -> bool:
+    return isinstance(model, WisardModel) and isinstance(model.encoder, Context)
+
+
 def _reads_pictures(model: AnyModel) -> bool:
-    return _reads_pixels(model) or _reads_neighbours(model)
+    return _reads_pixels(model) or _reads_neighbours(model) or _counts(model)
 
 
 def _is_network(model: AnyModel) -> bool:
@@ -153,6 +165,8 @@ def _reads(model: AnyModel) -> str:
         return "bits"
     if _reads_pixels(model):
         return "single pixels"
+    if _counts(model):
+        return "counts around a pixel"
     return "a pixel's neighbours" if _reads_neighbours(model) else "features"
 
 

@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.ir import (
-    PIXEL_BIT_NAMES,
     PIXEL_BITS,
     WINDOW_BITS,
-    BitSelect,
     EdgeFilter,
     PixelEncoder,
     WisardModel,
@@ -28,7 +26,7 @@ from wnn2hdl.ir.relational import occurring
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
 from wnn2hdl.verify.edge import EDGE_MASK, Edges, care_module, window_care
-from wnn2hdl.verify.reference import class_bits, lookup, module, plain_sum, winner
+from wnn2hdl.verify.reference import class_bits, lookup, module, pixel_code, plain_sum, winner
 from wnn2hdl.verify.specification import Claim, Samples, Specification, flags_of
 
 WINDOW = WINDOW_BITS * PIXEL_BITS
@@ -200,7 +198,7 @@ def _care(block: Block) -> str:
     So its output runs over all cared-for pixels and no others. ``care_window`` says whether a binary window
     is cared for.
     """
-    code_lines, code = _code(block.encoder, "free")
+    code_lines, code = pixel_code(block.encoder.names, "free")
     pixel_lines, pixel_cared = lookup("n", block.pixel_care, code)
     pixel_lines[:0] = code_lines
     red, green, blue = block.cared_pixel()
@@ -209,33 +207,8 @@ def _care(block: Block) -> str:
     return held + care_module(block.window_care)
 
 
-def _code(encoder: PixelEncoder, pixel: str) -> tuple[list[str], list[str]]:
-    """Lines, and for each code bit its expression, where ``pixel`` is a net of 24 bits.
-
-    Comparisons are of plain numbers of 32 bits, which their weights and offsets cannot exceed.
-    """
-    lines: list[str] = []
-    code: list[str] = []
-    for position, name in enumerate(encoder.names):
-        if isinstance(encoder, BitSelect) or position not in encoder.comparisons:
-            code.append(f"{pixel}[{PIXEL_BIT_NAMES[name]}]")
-            continue
-        comparison = encoder.comparisons[position]
-        sides = []
-        for terms, offset in (comparison.left, -comparison.offset), (comparison.right, comparison.offset):
-            channels = [
-                f"32'd{term.weight} * {pixel}[{PIXEL_BIT_NAMES[f'{term.channel}{term.high}']}:"
-                f"{PIXEL_BIT_NAMES[f'{term.channel}{term.low}']}]"
-                for term in terms
-            ]
-            sides.append(" + ".join([*channels, f"32'd{max(offset, 0)}"]))
-        lines.append(f"  wire compared_{position} = ({sides[0]}) >= ({sides[1]});")
-        code.append(f"compared_{position}")
-    return lines, code
-
-
 def _pixel(block: Block) -> str:
-    lines, code = _code(block.encoder, "rgb")
+    lines, code = pixel_code(block.encoder.names, "rgb")
     lines += [f"  wire [{len(code) - 1}:0] code = {{{', '.join(reversed(code))}}};", *winner(block.model)]
     claim = _pixel_claim(block)
     return module(claim.module, claim.inputs, claim.outputs, lines)

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.ir import WisardModel
+from wnn2hdl.ir import PIXEL_BIT_NAMES, Comparison, WisardModel
 from wnn2hdl.ir.models import ClassifierModel, FirstOrLast
 
 
@@ -53,6 +53,32 @@ def lookup(prefix: str, contents: NDArray[np.bool_], address: Sequence[str]) -> 
         return known[key]
 
     return lines, node(contents, len(address))
+
+
+def pixel_code(names: Sequence[str], pixel: str) -> tuple[list[str], list[str]]:
+    """Lines, and for each named bit of a pixel its expression, where ``pixel`` is a net of 24 bits.
+
+    Names are those of `wnn2hdl.ir.relational.Relational`. Comparisons are of plain numbers of 32 bits, which
+    their weights and offsets cannot exceed.
+    """
+    lines: list[str] = []
+    code: list[str] = []
+    for position, name in enumerate(names):
+        if name in PIXEL_BIT_NAMES:
+            code.append(f"{pixel}[{PIXEL_BIT_NAMES[name]}]")
+            continue
+        comparison = Comparison.parse(name)
+        sides = []
+        for terms, offset in (comparison.left, -comparison.offset), (comparison.right, comparison.offset):
+            channels = [
+                f"32'd{term.weight} * {pixel}[{PIXEL_BIT_NAMES[f'{term.channel}{term.high}']}:"
+                f"{PIXEL_BIT_NAMES[f'{term.channel}{term.low}']}]"
+                for term in terms
+            ]
+            sides.append(" + ".join([*channels, f"32'd{max(offset, 0)}"]))
+        lines.append(f"  wire compared_{position} = ({sides[0]}) >= ({sides[1]});")
+        code.append(f"compared_{position}")
+    return lines, code
 
 
 def winner(model: WisardModel) -> list[str]:

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import EdgeFilter, FeatureEncoder, Neighbourhood, WisardModel, Words
+from wnn2hdl.ir import Context, EdgeFilter, FeatureEncoder, Neighbourhood, WisardModel, Words
 from wnn2hdl.ir.care import CareSet
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
 from wnn2hdl.verify.block import block_specification
+from wnn2hdl.verify.context import context_specification
 from wnn2hdl.verify.gates import gates_specification
 from wnn2hdl.verify.lane import ENGINE, lane_specification
 from wnn2hdl.verify.neighbourhood import neighbourhood_specification
@@ -47,6 +48,8 @@ def specify(
         raise InputError("models of this kind are not proved yet", value=model.kind)
     if isinstance(model.encoder, Neighbourhood):
         return neighbourhood_specification(model, edges, model.encoder, care)
+    if isinstance(model.encoder, Context):
+        return context_specification(model, edges, model.encoder, care)
     return block_specification(model, edges, care)
 
 

@@ -11,6 +11,7 @@ from wnn2hdl.ir import (
     WINDOW_BITS,
     WINDOW_CODES,
     BitSelect,
+    Context,
     Neighbourhood,
     PixelEncoder,
     Tap,
@@ -128,6 +129,27 @@ def taps(encoder: Neighbourhood) -> dict[str, Bits]:
     rng = np.random.default_rng(_SEED)
     pixels = [pixels_of_codes(tap.pixel, np.arange(1 << tap.pixel.width), rng) for tap in encoder.tables]
     return {"rgb": pixel_bits(np.concatenate(pixels))}
+
+
+def pixels() -> dict[str, Bits]:
+    """`BLOCK_WINDOWS` pixels, a half of them of nearly equal channels."""
+    rng = np.random.default_rng(_SEED)
+    drawn = rng.integers(0, 256, size=(BLOCK_WINDOWS, len(CHANNELS)))
+    near = drawn[:, :1] + rng.integers(-16, 17, size=drawn.shape)
+    half = np.arange(BLOCK_WINDOWS)[:, np.newaxis] % 2 > 0
+    return {"rgb": pixel_bits(np.where(half, np.clip(near, 0, 255), drawn).astype(np.uint8))}
+
+
+def counts(encoder: Context) -> dict[str, Bits]:
+    """`BLOCK_WINDOWS` counts, a half of them at thresholds or one below."""
+    rng = np.random.default_rng(_SEED)
+    words = []
+    for sum_of, width in zip(encoder.sums, encoder.widths, strict=True):
+        least = [count.least for count in encoder.counts if (count.plane, count.size) == sum_of]
+        near = rng.choice(least, BLOCK_WINDOWS) - rng.integers(2, size=BLOCK_WINDOWS)
+        anywhere = rng.integers(sum_of[1] ** 2 + 1, size=BLOCK_WINDOWS)
+        words.append(codes_to_bits(np.where(rng.random(BLOCK_WINDOWS) < 1 / 2, near, anywhere), width))
+    return {"counts": np.concatenate(words, axis=1)}
 
 
 def _pools(taps: list[Tap]) -> tuple[BitSelect, dict[int, NDArray[np.int64]]]:

@@ -19,7 +19,7 @@ from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.evaluation.squares import vote
 from wnn2hdl.images import read_rgb, write_png
-from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, VideoFormat, WisardModel, window_codes
+from wnn2hdl.ir import BitSelect, Context, Neighbourhood, Tap, VideoFormat, WisardModel, window_codes
 from wnn2hdl.ir.registers import video_registers
 from wnn2hdl.ir.video import Answer, Beats
 from wnn2hdl.ir.window import framed_window_codes
@@ -312,6 +312,59 @@ def test_a_picture_through_a_core_of_neighbourhoods_is_classified_as_by_its_mode
     if mode == "exact":
         problems, _ = verify_build(tmp_path / "near", silent)
         assert not problems
+
+
+@pytest.fixture(scope="module")
+def counts() -> WisardModel:
+    """A model that counts two ratios of channels around a pixel."""
+    names = ["R[7:4]>=B[7:4]", "7x7(R[7:4]>=B[7:4])>=20", "7x7(R[7:4]>=B[7:4])>=30", "3x3(G7)>=5", "R7"]
+    draw = np.random.default_rng(3)
+    answers = np.stack([value := draw.permutation(np.arange(32) % 2), 1 - value])[:, np.newaxis]
+    encoder = Context(tuple(names))
+    return WisardModel(encoder, ("forest", "deforested"), np.arange(5).reshape(1, 1, 5), answers, 1)
+
+
+@pytest.mark.simulator
+@pytest.mark.parametrize(
+    ("answer", "stages", "square", "mode"), [("class", None, 20, "exact"), ("both", 2, None, "domain")]
+)
+def test_a_picture_through_a_core_that_counts_is_classified_as_by_its_model(
+    counts: WisardModel,
+    imagery: Path,
+    tmp_path: Path,
+    answer: Answer,
+    stages: int | None,
+    square: int | None,
+    mode: Mode,
+) -> None:
+    options = CompileOptions(
+        target="video",
+        max_width=64,
+        answer=answer,
+        stages=stages,
+        square=square,
+        mode=mode,
+        care=imagery if mode == "domain" else None,
+    )
+    build = compile_model(counts, tmp_path / "counts", options, silent)
+    assert build.failure is None
+    edges = ["edge"] if answer == "both" else []
+    assert list(build.report["parts"]) == ["planes", "context", *edges, "video", "ip", "sobel"]
+    assert build.report["proof"]["status"] == "proved"
+    rgb = read_rgb(imagery / "7.png")[: 37 if mode == "exact" else None, : 61 if mode == "exact" else None]
+    picture = tmp_path / "picture.png"
+    write_png(picture, rgb)
+    result = play(tmp_path / "counts", picture, "icarus", silent)
+    classes = model_classifier(counts).classify(with_halo(rgb, 3))
+    assert np.array_equal(result.foreground, classes != 0)
+    assert 0.1 < result.foreground.mean() < 0.9
+    assert result.cared == 1.0
+    assert result.frame is not None
+    assert np.array_equal(result.frame & 127, classes)
+    if square:
+        assert result.squares is not None
+        voted = vote(classes, None, side=square, share=1.0, seed=0, count=2)[::square, ::square]
+        assert np.array_equal(result.squares, voted)
 
 
 def test_a_clock_beyond_that_of_the_core_is_refused(model: WisardModel) -> None:

@@ -34,8 +34,8 @@ def test_an_encoder_says_what_hardware_needs() -> None:
     encoder = Context(BITS)
     assert encoder.halo == 3
     assert encoder.planes == ("R7", "3R>=2B", "G[7:2]>=B[7:2]")
-    assert encoder.own == ("R7",)
-    assert encoder.squares == (("3R>=2B", 7), ("G[7:2]>=B[7:2]", 3))
+    assert encoder.sums == (("R7", 1), ("3R>=2B", 7), ("G[7:2]>=B[7:2]", 3))
+    assert encoder.widths == (1, 6, 4)
     # Nothing has 25 pixels without having 13.
     assert [code for code in range(16) if not encoder.possible[code]] == [8, 9, 12, 13]
 

@@ -27,7 +27,7 @@ def trained() -> WisardModel:
 def test_a_trained_classifier_counts_two_bits_and_answers_for_other_landscapes(trained: WisardModel) -> None:
     encoder = trained.encoder
     assert isinstance(encoder, Context)
-    assert (encoder.width, encoder.halo, len(encoder.own), len(encoder.squares)) == (8, 3, 2, 2)
+    assert (encoder.width, encoder.halo, encoder.widths) == (8, 3, (1, 1, 6, 6))
     result = evaluate(model_classifier(trained), from_samples(3, 96, seed=50), silent)
     assert result.accuracy > 0.87
     assert trained.training["images"] == [f"landscape-{seed:05d}" for seed in range(1, 5)]
