@@ -1,13 +1,18 @@
 """Fixtures that more than one part of the suite needs."""
 
+import os
+import shutil
 import signal
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import is_hypothesis_test
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
 
 REAL_DATA = Path(__file__).parents[2] / "shared" / "data"
 
@@ -108,3 +113,43 @@ def write_build() -> Callable[..., Path]:
         return folder
 
     return write
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator["Browser"]:
+    """Headless Chromium; where CI lacks it, that is a failure."""
+    from playwright.sync_api import sync_playwright
+
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None and not os.environ.get("CI"):
+        pytest.skip("Chromium is not installed")
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def open_page(browser: "Browser") -> Iterator[Callable[..., "Page"]]:
+    """``open_page(path, color_scheme)`` shows a file; any message, error or request fails the test."""
+    wrong: list[str] = []
+    pages: list[Page] = []
+
+    def show(path: Path, scheme: Any = "light") -> "Page":
+        page = browser.new_page(color_scheme=scheme, viewport={"width": 1180, "height": 900})
+        pages.append(page)
+        page.on("console", lambda message: wrong.append(message.text))
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.on("request", lambda request: wrong.append(request.url) if _asked(request.url) else None)
+        page.goto(path.as_uri())
+        return page
+
+    yield show
+    for page in pages:
+        page.close()
+    assert wrong == []
+
+
+def _asked(url: str) -> bool:
+    """Whether an address is that of something outside the page."""
+    return not url.startswith(("file:", "data:"))

@@ -2,15 +2,13 @@
 
 import io
 import json
-import os
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Page
 
 from wnn2hdl.apps.sweep import Recipe, draw, present, run_locally, run_sweep
 from wnn2hdl.apps.sweep import grid as sweep_grid
@@ -21,22 +19,10 @@ from wnn2hdl.encode import high_bits
 from wnn2hdl.ir import LutNetwork
 from wnn2hdl.report import Care, ModelFigures, index_page
 from wnn2hdl.report.logic import expression, grid
-from wnn2hdl.report.page import form
+from wnn2hdl.report.shell import form
 from wnn2hdl.samples.landscapes import IMAGES, MASKS, write_landscapes
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Headless Chromium; where CI lacks it, that is a failure."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    if chromium is None and not os.environ.get("CI"):
-        pytest.skip("Chromium is not installed")
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield opened
-        opened.close()
 
 
 @pytest.fixture(scope="module")
@@ -47,37 +33,11 @@ def folder(write_build: Callable[..., Path], tmp_path_factory: pytest.TempPathFa
     return made
 
 
-@pytest.fixture
-def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
-    """``open_page(path, color_scheme)`` shows a file; any message, error or request fails the test."""
-    wrong: list[str] = []
-    pages: list[Page] = []
-
-    def show(path: Path, scheme: Any = "light") -> Page:
-        page = browser.new_page(color_scheme=scheme, viewport={"width": 1180, "height": 900})
-        pages.append(page)
-        page.on("console", lambda message: wrong.append(message.text))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("request", lambda request: wrong.append(request.url) if asked(request.url) else None)
-        page.goto(path.as_uri())
-        return page
-
-    yield show
-    for page in pages:
-        page.close()
-    assert wrong == []
-
-
 CUT_OFF = """[...document.querySelectorAll('main *')]
   .filter(x => x.scrollWidth > x.clientWidth + 1)
   .filter(x => ['auto', 'scroll'].includes(getComputedStyle(x).overflowX))
   .map(x => [x.className, x.tabIndex === 0 || x.querySelector('[tabindex="0"], a, button') !== null])"""
 """What holds more than it shows, and whether the keyboard gets there."""
-
-
-def asked(url: str) -> bool:
-    """Whether an address is that of something outside the page."""
-    return not url.startswith(("file:", "data:"))
 
 
 @pytest.fixture
@@ -274,7 +234,7 @@ def test_the_page_of_a_sweep_fits_the_window(open_page: Callable[..., Page], swe
 
 def test_plots_have_the_theme_of_the_page(open_page: Callable[..., Page], sweep: Path) -> None:
     def corner(page: Page) -> list[int]:
-        shot = page.locator(".plots img").first.screenshot()
+        shot = page.locator(".plots figure").first.screenshot()
         colour = Image.open(io.BytesIO(shot)).convert("RGB").getpixel((2, 2))
         assert isinstance(colour, tuple)
         return list(colour)

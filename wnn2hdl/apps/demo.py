@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from wnn2hdl.apps.deforestation.local import run_locally as scan_locally
 from wnn2hdl.apps.deforestation.options import ScanOptions
-from wnn2hdl.apps.deforestation.output import OVERLAY_FILE
+from wnn2hdl.apps.deforestation.output import OVERLAY_FILE, SUMMARY_HTML
 from wnn2hdl.apps.deforestation.scanning import Scanner
 from wnn2hdl.apps.navigation.flight import FlightRun, run_flight
 from wnn2hdl.apps.navigation.methods import WEIGHTLESS
+from wnn2hdl.apps.navigation.page import PAGE_FILE as FLIGHT_PAGE
 from wnn2hdl.apps.navigation.recording import Recording, split
 from wnn2hdl.apps.navigation.summary import write_run
 from wnn2hdl.apps.overview import Overview, write_overview
@@ -205,7 +206,7 @@ def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRu
             f"A landscape of {SCENE_SIDE}x{SCENE_SIDE} pixels as the smallest circuit sees it: "
             f"{percent(scanned['deforested']['share'])} is deforested."
         )
-        exhibits.append(Exhibit("Map", text, "scan/summary.md", f"scan/{OVERLAY_FILE}"))
+        exhibits.append(Exhibit("Map", text, f"scan/{SUMMARY_HTML}?index=../{PAGE}", f"scan/{OVERLAY_FILE}"))
     if flight:
         search = flight.result.searches[-1]
         row = flight.rows(search)[WEIGHTLESS]
@@ -213,7 +214,9 @@ def _exhibits(outcome: Outcome, scanned: dict[str, Any] | None, flight: FlightRu
             f"{len(row.fixes)} frames of a generated flight, located on the whole map by weightless edges: "
             f"{row.mean_m:.1f} m off on average. {search.beaten}"
         )
-        exhibits.append(Exhibit("Flight", text.strip(), "flight/flight.md", "flight/tracks_map.svg"))
+        exhibits.append(
+            Exhibit("Flight", text.strip(), f"flight/{FLIGHT_PAGE}?index=../{PAGE}", "flight/tracks_map.svg")
+        )
     text = f"{len(outcome.plan)} trained and costed circuits, and the statistics that choose among them."
-    exhibits.append(Exhibit("Sweep", text, "sweep/index.html", "sweep/pareto.svg"))
+    exhibits.append(Exhibit("Sweep", text, f"sweep/index.html?index=../{PAGE}", "sweep/pareto.svg"))
     return exhibits

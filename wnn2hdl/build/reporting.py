@@ -122,10 +122,18 @@ def open_entries(folders: Sequence[Path], index: Path) -> tuple[Entry, ...]:
         if not (folder / REPORT_HTML).is_file():
             write_page(folder)
         name = place.name if names[place.name] == 1 else str(folder)
-        link = os.path.relpath(place / REPORT_HTML, index.resolve().parent)
         networks = Design.load(folder).networks
-        entries.append(Entry(name, quote(Path(link).as_posix()), report, networks, changes))
+        entries.append(Entry(name, _link(place / REPORT_HTML, index.resolve()), report, networks, changes))
     return tuple(entries)
+
+
+def _link(page: Path, index: Path) -> str:
+    """The address of a page for its index, with the way back to it."""
+    way, back = (
+        quote(Path(os.path.relpath(end, start.parent)).as_posix())
+        for start, end in ((index, page), (page, index))
+    )
+    return f"{way}?index={back}"
 
 
 def _require_utf8(folder: Path) -> None:

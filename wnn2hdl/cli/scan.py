@@ -105,8 +105,8 @@ def scan_command(
     """Map deforestation in INPUT, a picture, GeoTIFF or folder of them, with MODEL.
 
     MODEL is a model file, or a build folder, whose circuit then answers, bit by bit. Written are classes.tif,
-    polygons, overlay.png, summary.json and summary.md. The same command continues where an interrupted one
-    stopped.
+    polygons, overlay.png, and a summary as a page, as Markdown and as JSON. The same command continues where
+    an interrupted one stopped.
 
     \b
     Examples:

@@ -7,7 +7,7 @@ from wnn2hdl.images.light import exposed, hazed
 from wnn2hdl.images.palette import CLASS_COLOURS, Palette
 from wnn2hdl.images.reading import Picture, picture_size, read_picture, read_rgb, whole_windows
 from wnn2hdl.images.sources import PlainPicture, Source, open_picture
-from wnn2hdl.images.writing import png_bytes, write_png
+from wnn2hdl.images.writing import jpeg_bytes, png_bytes, write_png
 
 __all__ = [
     "CLASS_COLOURS",
@@ -21,6 +21,7 @@ __all__ = [
     "by_stem",
     "exposed",
     "hazed",
+    "jpeg_bytes",
     "list_images",
     "open_picture",
     "pair_masks",

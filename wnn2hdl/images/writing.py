@@ -1,4 +1,4 @@
-"""Arrays to PNG."""
+"""Arrays to PNG and JPEG."""
 
 import io
 from pathlib import Path
@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from wnn2hdl.files import write_bytes
+
+_QUALITY = 82
+"""Of a JPEG."""
 
 
 def write_png(path: Path, array: NDArray[np.uint8] | NDArray[np.bool_]) -> None:
@@ -28,4 +31,11 @@ def png_bytes(array: NDArray[np.uint8] | NDArray[np.bool_]) -> bytes:
     """What `write_png` writes."""
     stream = io.BytesIO()
     Image.fromarray(array).save(stream, format="PNG")
+    return stream.getvalue()
+
+
+def jpeg_bytes(array: NDArray[np.uint8]) -> bytes:
+    """A photograph, uint8 ``[height, width, 3]``, as a JPEG for a page: a tenth of what a PNG takes."""
+    stream = io.BytesIO()
+    Image.fromarray(array).save(stream, format="JPEG", quality=_QUALITY, optimize=True)
     return stream.getvalue()

@@ -22,9 +22,10 @@ from wnn2hdl.report.gate_formats import gate_json, gate_junit, gate_markdown
 from wnn2hdl.report.index_page import Entry, Exhibit, index_page, is_index
 from wnn2hdl.report.markdown import report_markdown
 from wnn2hdl.report.model_figures import model_figures
-from wnn2hdl.report.page import Picture, build_page, percent
+from wnn2hdl.report.page import Picture, build_page
 from wnn2hdl.report.placed import HARNESSES, placed_rows
 from wnn2hdl.report.schemas import check_report, load_report
+from wnn2hdl.report.shell import percent
 
 __all__ = [
     "HARNESSES",

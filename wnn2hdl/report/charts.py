@@ -1,25 +1,17 @@
 """Charts as SVG that takes its colours from the page, so that one drawing serves light and dark."""
 
-import io
-import re
 from collections.abc import Callable, Mapping, Sequence
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
 from wnn2hdl.errors import printable
 from wnn2hdl.muted import muted
+from wnn2hdl.report.drawing import ACCENT, INK, MUTED, PAPER, RULE, inlined, mark, saved
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from matplotlib.transforms import Bbox
-
-INK, MUTED, RULE, ACCENT, PAPER = "#000001", "#000002", "#000003", "#000004", "#000005"
-"""Colours that stand for the page's own while Matplotlib draws."""
-
-_VARIABLES = {INK: "--ink", MUTED: "--muted", RULE: "--rule", ACCENT: "--accent", PAPER: "--paper"}
 
 _WIDTH, _NARROW_WIDTH = 11.0, 4.6
 """Inches, each of which a page shows about as 90 pixels; the narrow one is for phones."""
@@ -62,9 +54,10 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
     def paint(axes: "Axes") -> None:
         places = [i + (i >= len(measured)) * 0.9 for i in range(len(rows))]
         for place, (name, luts) in zip(places, measured, strict=False):
-            axes.barh(place, luts, height=height, color=MUTED if name == "sobel" else ACCENT)
-        for place, (_, luts) in zip(places[len(measured) :], quoted, strict=True):
-            axes.barh(
+            (bar,) = axes.barh(place, luts, height=height, color=MUTED if name == "sobel" else ACCENT)
+            mark(bar, f"{name}: {luts:,} LUTs, measured here")
+        for place, (name, luts) in zip(places[len(measured) :], quoted, strict=True):
+            (bar,) = axes.barh(
                 place,
                 luts,
                 height=height,
@@ -73,6 +66,7 @@ def lut_bars(report: Mapping[str, Any], *, narrow: bool = False) -> Markup:
                 linestyle=(0, (3, 2)),
                 linewidth=1,
             )
+            mark(bar, f"{name}: {luts:,} LUTs, published")
         most = max(1, *(luts for _, luts in rows))
         for place, (_, luts) in zip(places, rows, strict=True):
             axes.text(luts + most / 80, place, f"{luts:,}", va="center", color=INK, fontweight="bold")
@@ -119,14 +113,16 @@ def cube_bars(minimised: Mapping[str, Mapping[str, int]], *, narrow: bool = Fals
     """Product terms of each table before and after minimising, on a logarithmic scale."""
 
     def paint(axes: "Axes") -> None:
-        for place, sizes in enumerate(minimised.values()):
+        for place, (name, sizes) in enumerate(minimised.items()):
             before, after = sizes["cubes_before"], sizes["cubes_after"]
             # A constant table has no product term, and zero has no logarithm.
             axes.plot([max(after, 0.7), max(before, 0.7)], [place, place], color=RULE, linewidth=3, zorder=1)
-            axes.scatter(
+            ring = axes.scatter(
                 max(before, 0.7), place, s=46, facecolor=PAPER, edgecolor=MUTED, linewidth=1.4, zorder=2
             )
-            axes.scatter(max(after, 0.7), place, s=46, color=ACCENT, zorder=3)
+            mark(ring, f"{name}: {before:,} cubes as extracted")
+            disc = axes.scatter(max(after, 0.7), place, s=46, color=ACCENT, zorder=3)
+            mark(disc, f"{name}: {after:,} cubes minimised")
             for value, colour in ((before, MUTED), (after, INK)):
                 axes.annotate(
                     f"{value:,}",
@@ -169,7 +165,9 @@ def scatter(points: Sequence[tuple[str, int, float]], *, narrow: bool = False) -
     def paint(axes: "Axes") -> None:
         from matplotlib.ticker import MaxNLocator
 
-        axes.scatter([x for x, _ in names], [y for _, y in names], s=40, color=ACCENT, zorder=2)
+        for (x, y), shared in names.items():
+            point = axes.scatter(x, y, s=40, color=ACCENT, zorder=2)
+            mark(point, f"{', '.join(shared)}: {x:,} LUTs, {y:.2f} %")
         axes.margins(x=0.12, y=0.2)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.grid(color=RULE, linewidth=0.6)
@@ -199,8 +197,15 @@ def light_lines(quantity: str, points: Sequence[Mapping[str, Any]], *, narrow: b
         if all(point["interval"] for point in points):
             low, high = ([100 * point["interval"][end] for point in points] for end in (0, 1))
             axes.fill_between(values, low, high, color=RULE, linewidth=0)
-        axes.plot(values, shares, color=ACCENT, marker="o", markersize=5)
-        axes.plot(values, worst, color=MUTED, marker="o", markersize=3, linestyle=(0, (3, 2)), linewidth=1)
+        axes.plot(values, shares, color=ACCENT)
+        axes.plot(values, worst, color=MUTED, linestyle=(0, (3, 2)), linewidth=1)
+        for line, size, colour, what in (
+            (shares, 5, ACCENT, "all images"),
+            (worst, 3, MUTED, "the worst image"),
+        ):
+            for value, share in zip(values, line, strict=True):
+                (point,) = axes.plot(value, share, color=colour, marker="o", markersize=size)
+                mark(point, f"{quantity} {value:g}: {share:.2f} % of {what}")
         for line, text in ((shares, "all images"), (worst, "worst image")):
             axes.annotate(
                 text, (values[-1], line[-1]), xytext=(0, 8), textcoords="offset points", ha="right", color=INK
@@ -275,26 +280,5 @@ def _svg(paint: "Callable[[Axes], None]", title: str, prefix: str, height: float
         axes.tick_params(axis="y", length=0)
         axes.spines["left"].set_visible(prefix not in ("luts", "cubes"))
         paint(axes)
-        return _themed(figure, title, prefix, narrow=narrow)
-
-
-def _themed(figure: "Figure", title: str, prefix: str, *, narrow: bool) -> Markup:
-    """The figure as part of a page: no head, no fixed size, the page's colours and font, its own ids."""
-    stream = io.StringIO()
-    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    text = stream.getvalue()
-    text = text[text.index("<svg") :]
-    text = re.sub(r"\s*<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
-    for colour, variable in _VARIABLES.items():
-        text = text.replace(colour, f"var({variable})")
-    # Its style sheet would reach the whole page, and its fonts are not the page's.
-    text = re.sub(r"\s*<style.*?</style>|; font-family: [^;\"]*|<!--.*?-->", "", text, flags=re.DOTALL)
-    prefix += "-narrow" * narrow
-    text = re.sub(r' id="([^"]+)"', rf' id="{prefix}-\1"', text)
-    text = re.sub(r'(xlink:href="#|url\(#)', rf"\1{prefix}-", text)
-    head = f'<svg class="chart{" narrow" * narrow}" role="img" aria-label="{escape(printable(title))}"'
-    box = re.search(r'viewBox="[^"]+"', text)
-    assert box is not None
-    head = f'{head} {box[0]} xmlns:xlink="http://www.w3.org/1999/xlink">'
-    # Matplotlib has escaped the texts.
-    return Markup(re.sub(r"<svg[^>]*>", lambda _: head, text, count=1))  # noqa: S704
+        kind = "chart narrow" if narrow else "chart"
+        return inlined(saved(figure), title, f"{prefix}-narrow" if narrow else prefix, kind)

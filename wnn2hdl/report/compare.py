@@ -8,7 +8,8 @@ import numpy as np
 
 from wnn2hdl.ir import MAX_TABLE_INPUTS, LutNetwork, codes_to_bits
 from wnn2hdl.markdown import MISSING
-from wnn2hdl.report.page import MANY_TABLES, form
+from wnn2hdl.report.page import MANY_TABLES
+from wnn2hdl.report.shell import form
 
 _LEAST_POINTS = 0.0001
 

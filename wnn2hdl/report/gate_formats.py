@@ -8,7 +8,7 @@ from wnn2hdl.errors import printable
 from wnn2hdl.markdown import MISSING, Align, escaped, table
 from wnn2hdl.report.baseline import Recorded, recorded
 from wnn2hdl.report.gate import Check
-from wnn2hdl.report.page import form
+from wnn2hdl.report.shell import form
 
 VERSION = 1
 """Of the form of `gate_json`; it rises when a key changes its meaning or goes away."""

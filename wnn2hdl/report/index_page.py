@@ -10,7 +10,7 @@ from wnn2hdl.ir import LutNetwork
 from wnn2hdl.report.charts import for_all_widths, scatter
 from wnn2hdl.report.compare import compare, compare_tables
 from wnn2hdl.report.gate import Check
-from wnn2hdl.report.page import data_element, environment
+from wnn2hdl.report.shell import data_element, environment
 
 _FIGURES = {
     "LUTs": ("parts.{target}.luts", "count"),

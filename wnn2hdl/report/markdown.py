@@ -7,8 +7,9 @@ from typing import Any
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.markdown import MISSING, escaped, table
 from wnn2hdl.report.charts import published
-from wnn2hdl.report.page import MANY_TABLES, form, light_curves, plain_options, simulations
+from wnn2hdl.report.page import MANY_TABLES, light_curves, plain_options, simulations
 from wnn2hdl.report.placed import NOTE, PLACED_HEADS, placed_notes, placed_rows, vivado_rows
+from wnn2hdl.report.shell import form
 
 _COLUMNS = {
     "luts": "LUTs",

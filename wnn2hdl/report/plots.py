@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wnn2hdl.files import write_bytes
-from wnn2hdl.report.charts import INK
+from wnn2hdl.report.drawing import INK, mark, told
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,7 +48,7 @@ def save_plot(figure: "Figure", path: Path) -> tuple[Path, Path]:
 
     Returns:
         The two files written: PNG on white, and SVG, of which whatever is drawn in `INK` is dark on a light
-        page and light on a dark one.
+        page and light on a dark one; what `wnn2hdl.report.drawing.mark` was called for tells its value.
 
     Raises:
         InputError: the folder does not exist or cannot be written.
@@ -59,7 +59,7 @@ def save_plot(figure: "Figure", path: Path) -> tuple[Path, Path]:
     write_bytes(picture, stream.getvalue())
     stream = io.BytesIO()
     figure.savefig(stream, format="svg", dpi=150, facecolor="none", metadata={"Date": None})
-    text = stream.getvalue().decode().replace(INK, "currentColor")
+    text = told(stream.getvalue().decode()).replace(INK, "currentColor")
     write_bytes(drawing, text.replace("<defs>", f"{_THEME}\n <defs>", 1).encode())
     return picture, drawing
 
@@ -97,6 +97,8 @@ def plot_pareto(
     axes.scatter([x for x, _, _ in points], [100 * y for _, y, _ in points], color="0.6", label="tried")
     luts, accuracies = [x for x, _, _ in front], [100 * y for _, y, _ in front]
     axes.step(luts, accuracies, where="post", marker="o", color="tab:green", label="best")
+    for x, y, method in points:
+        mark(axes.scatter(x, 100 * y, color="none"), f"{method}: {x:,} LUTs, {100 * y:.2f} %")
     for x, y, (_, _, method) in zip(luts, accuracies, front, strict=True):
         axes.annotate(method, (x, y), xytext=(6, 4), textcoords="offset points", fontsize="small")
     # Linear up to 1, since a classifier that is a single wire takes no LUT.

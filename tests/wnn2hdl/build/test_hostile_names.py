@@ -50,6 +50,8 @@ def builds(model: WisardModel, tmp_path_factory: pytest.TempPathFactory) -> tupl
     options = CompileOptions(target="pixel")
     hostile = replace(model, classes=HOSTILE, training={"</pre>": "*/", COMMAND: "a\n</script>"})
     plain = replace(model, training={"note": "text", COMMAND: "train"})
+    # The same circuit before: what the cache remembers of it takes no stage of either build.
+    assert compile_model(plain, folder / "before", options, silent).failure is None
     assert compile_model(plain, folder / "plain", options, silent).failure is None
     assert compile_model(hostile, folder / FOLDER, options, silent).failure is None
     return folder / "plain", folder / FOLDER

@@ -119,8 +119,8 @@ def test_entries_are_named_after_their_folders_and_linked_from_the_index(
     folders = [write_build(tmp_path / "some builds" / "a"), write_build(tmp_path / "b")]
     entries = open_entries(folders, tmp_path / "pages" / "index.html")
     assert [(entry.name, entry.link) for entry in entries] == [
-        ("a", "../some%20builds/a/report.html"),
-        ("b", "../b/report.html"),
+        ("a", "../some%20builds/a/report.html?index=../../pages/index.html"),
+        ("b", "../b/report.html?index=../pages/index.html"),
     ]
     assert all((folder / "report.html").is_file() for folder in folders)
 

@@ -41,7 +41,7 @@ def test_several_get_an_index_and_two_are_compared(report: Run, builds: tuple[Pa
     assert (status, out.split()) == (0, ["build/a/report.html", "build/b/report.html", "build/index.html"])
     page = Path("build/index.html").read_text()
     assert "a and b compared" in page
-    assert '<a href="a/report.html">' in page
+    assert '<a href="a/report.html?index=../index.html">' in page
 
 
 def test_any_two_of_several_are_compared(
@@ -51,7 +51,7 @@ def test_any_two_of_several_are_compared(
     assert report(*builds, third, "-o", "pages/i.html", "--compare", third, builds[0])[0] == 0
     page = Path("pages/i.html").read_text()
     assert "c and a compared" in page
-    assert '<a href="../build/a/report.html">' in page
+    assert '<a href="../build/a/report.html?index=../../pages/i.html">' in page
     report(*builds, third, "-o", "pages/i.html")
     assert "compared</h2>" not in Path("pages/i.html").read_text()
 

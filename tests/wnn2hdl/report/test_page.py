@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wnn2hdl.ir import BitSelect, Lut, LutNetwork, Neighbourhood, Tap
-from wnn2hdl.report.page import Picture, build_page, form, percent
+from wnn2hdl.report.page import Picture, build_page
+from wnn2hdl.report.shell import form, percent
 
 VOID = {"meta", "link", "img", "input", "br"}
 

@@ -10,6 +10,7 @@ from wnn2hdl.files import make_folder
 
 SUMMARY_FILE = "summary.json"
 SUMMARY_PAGE = "summary.md"
+SUMMARY_HTML = "summary.html"
 CLASSES_FILE = "classes.tif"
 OVERLAY_FILE = "overlay.png"
 CHANGE_FILE = "change.tif"
@@ -26,6 +27,7 @@ WINDOWS = "windows"
 _RESULTS = (
     SUMMARY_FILE,
     SUMMARY_PAGE,
+    SUMMARY_HTML,
     CLASSES_FILE,
     OVERLAY_FILE,
     CHANGE_FILE,

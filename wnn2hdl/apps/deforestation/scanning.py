@@ -24,6 +24,7 @@ from wnn2hdl.apps.deforestation.output import (
     CLASSES_FILE,
     OVERLAY_FILE,
     SUMMARY_FILE,
+    SUMMARY_HTML,
     SUMMARY_PAGE,
     WINDOWS,
     WORK,
@@ -32,6 +33,7 @@ from wnn2hdl.apps.deforestation.output import (
     unfinished,
 )
 from wnn2hdl.apps.deforestation.overlay import overlay_palette, write_overlay
+from wnn2hdl.apps.deforestation.page import scan_page
 from wnn2hdl.apps.deforestation.polygons import write_polygons
 from wnn2hdl.apps.deforestation.summary import (
     change_figures,
@@ -271,6 +273,7 @@ class Scanner:
 
     def _finish(self, output: Path, summary: dict[str, Any]) -> dict[str, Any]:
         write_text(output / SUMMARY_PAGE, page(summary))
+        write_text(output / SUMMARY_HTML, scan_page(summary, output))
         write_json(output / SUMMARY_FILE, summary)
         return summary
 

@@ -149,7 +149,7 @@ def page(summary: Mapping[str, Any]) -> str:
             for x in summary["pictures"]
         )
         sections += ["## Pictures", table(["picture", "deforested", "hectares", "familiar"], rows)]
-    sections += ["## How", table(["", ""], _how(summary).items())]
+    sections += ["## How", table(["", ""], how(summary).items())]
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
@@ -176,7 +176,8 @@ def _change(change: Mapping[str, Any]) -> str:
     )
 
 
-def _how(summary: Mapping[str, Any]) -> dict[str, str]:
+def how(summary: Mapping[str, Any]) -> dict[str, str]:
+    """With what model, options and versions a scan was made, by name."""
     return {
         "model": f"{summary['model']['path']}, SHA-256 {summary['model']['sha256']}",
         **{key: "none" if value is None else str(value) for key, value in summary["options"].items()},

@@ -222,6 +222,12 @@ def flight_markdown(result: FlightResult) -> str:
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
+def notes(result: FlightResult) -> list[str]:
+    """What a reader must know before believing the figures, a paragraph each."""
+    told = [_left_out(result), _READ_BACK if result.read_back else ""]
+    return [note for note in (*told, "" if result.calibrated_on else _UNCALIBRATED) if note]
+
+
 def _left_out(result: FlightResult) -> str:
     """What of the map is not searched, and what was assumed about it."""
     note = f"{result.map_note[:1].upper()}{result.map_note[1:]}." if result.map_note else ""

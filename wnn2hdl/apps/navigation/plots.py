@@ -1,8 +1,10 @@
 """Pictures of a flight: errors by method, and the tracks on the map; the same results give the same bytes."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import cv2
 import numpy as np
@@ -12,8 +14,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
-from wnn2hdl.apps.navigation.results import FAR_M, FlightResult, FrameFix, SearchResult
-from wnn2hdl.report.charts import INK
+from wnn2hdl.apps.navigation.results import FAR_M, FlightResult, FrameFix, MethodResult, SearchResult
+from wnn2hdl.report.drawing import INK, mark
 from wnn2hdl.report.plots import plot_style, save_plot
 
 ToPixel = Callable[[ArrayLike, ArrayLike], tuple[NDArray[np.float64], NDArray[np.float64]]]
@@ -30,6 +32,34 @@ _LEAST_SIDE_M = 150.0
 
 _LEAST_ASPECT = 0.7
 """A straight track is shown with this much of its length beside it."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The part of a map that shows a flight, in pixels; ends are half open."""
+
+    top: int
+    bottom: int
+    left: int
+    right: int
+
+    @classmethod
+    def around(
+        cls, methods: Sequence[MethodResult], shape: tuple[int, int], to_pixel: ToPixel, gsd_m: float
+    ) -> Self:
+        """All that is known of the truth, all positions, and something around them.
+
+        Args:
+            methods: at least one, with one frame whose truth or position is known.
+            shape: rows and columns of the map.
+            to_pixel: where positions lie in it.
+            gsd_m: metres per pixel.
+        """
+        tracks = [_known(methods[0].fixes, to_pixel)]
+        tracks += [_located(method.fixes, to_pixel)[:2] for method in methods]
+        places = [np.concatenate([track[i] for track in tracks]) for i in (0, 1)]
+        least = max(_LEAST_SIDE_M / gsd_m, _LEAST_ASPECT * max(float(np.ptp(side)) for side in places))
+        return cls(*_span(places[0], shape[0], least), *_span(places[1], shape[1], least))
 
 
 @plot_style()
@@ -66,12 +96,16 @@ def _draw_errors(axes: Axes, search: SearchResult) -> None:
         # A track has the colour of the method it is made of.
         colour = COLOURS[(place - alone if method.tracked else place) % len(COLOURS)]
         hatch = "//" if method.tracked else ""
-        axes.barh(place, method.mean_m, 0.6, color=colour, hatch=hatch, edgecolor=INK, linewidth=0.6)
+        (bar,) = axes.barh(place, method.mean_m, 0.6, color=colour, hatch=hatch, edgecolor=INK, linewidth=0.6)
+        mark(bar, f"{method.name}: {_mean_and_std(method.mean_m, method.std_m)}")
         spread = [[min(method.std_m, method.mean_m)], [method.std_m]]
         axes.errorbar(method.mean_m, place, xerr=spread, color=INK, capsize=4, linewidth=1.2)
         # Errors of frames lie in the order of the flight, from the bar's top to its foot.
         heights = place + np.linspace(-0.25, 0.25, len(method.errors_m))
-        axes.plot(method.errors_m, heights, ".", color=INK, markersize=3, alpha=0.6)
+        seen = [fix for fix in method.fixes if fix.error_m is not None]
+        for fix, error, height in zip(seen, method.errors_m, heights, strict=True):
+            (dot,) = axes.plot(error, height, ".", color=INK, markersize=3, alpha=0.6)
+            mark(dot, f"{fix.frame}: {error:.1f} m")
         dots += list(zip(method.errors_m, heights, strict=True))
         far = max(far, 1.1 * (method.mean_m + method.std_m))
     # A few frames far off would press all bars together; they wait at the border.
@@ -119,14 +153,10 @@ def plot_tracks(
     Raises:
         InputError: the folder does not exist or cannot be written.
     """
-    fixes = search.methods[0].fixes
-    known = [(fix.truth_latitude, fix.truth_longitude) for fix in fixes if fix.truth_latitude is not None]
-    truth = to_pixel(*np.array(known, dtype=np.float64).reshape(-1, 2).T)
+    extent = Extent.around(search.methods, picture.shape[:2], to_pixel, gsd_m)
+    truth = _known(search.methods[0].fixes, to_pixel)
     tracks = [_located(method.fixes, to_pixel) for method in search.methods]
-    places = [np.concatenate([truth[i], *(track[i] for track in tracks)]) for i in (0, 1)]
-    least = max(_LEAST_SIDE_M / gsd_m, _LEAST_ASPECT * max(float(np.ptp(side)) for side in places))
-    top, bottom = _span(places[0], picture.shape[0], least)
-    left, right = _span(places[1], picture.shape[1], least)
+    top, bottom, left, right = extent.top, extent.bottom, extent.left, extent.right
     part = picture[top:bottom, left:right]
     scale = min(1.0, _WIDEST_PX / max(part.shape[:2]))
     shown = cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) if scale < 1 else part
@@ -137,7 +167,7 @@ def plot_tracks(
     # Half a pixel around, since whole numbers are centres of pixels. Paler, to let the tracks stand out.
     axes.imshow(shown, extent=(left - 0.5, right - 0.5, bottom - 0.5, top - 0.5), alpha=0.75)
     outline = [withStroke(linewidth=5.5, foreground="black")]
-    if known:
+    if truth[0].size:
         axes.plot(truth[1], truth[0], "-", color="white", linewidth=3.5, path_effects=outline, label="truth")
         axes.plot(truth[1], truth[0], "o", color="white", markeredgecolor="black", markersize=7)
     for place, (method, (rows, columns, fixed)) in enumerate(zip(search.methods, tracks, strict=True)):
@@ -171,6 +201,12 @@ def plot_tracks(
         labelcolor="black",
     )
     return save_plot(figure, path)
+
+
+def _known(fixes: tuple[FrameFix, ...], to_pixel: ToPixel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rows and columns of the true positions that are known."""
+    known = [(fix.truth_latitude, fix.truth_longitude) for fix in fixes if fix.truth_latitude is not None]
+    return to_pixel(*np.array(known, dtype=np.float64).reshape(-1, 2).T)
 
 
 def _located(

@@ -8,8 +8,10 @@ from typing import Any
 from wnn2hdl.apps.navigation.fixes import UNCALIBRATED
 from wnn2hdl.apps.navigation.flight import FlightRun
 from wnn2hdl.apps.navigation.output import write_results
+from wnn2hdl.apps.navigation.page import PAGE_FILE, flight_page
 from wnn2hdl.apps.navigation.plots import plot_errors, plot_tracks
 from wnn2hdl.apps.navigation.results import FIGURES, MethodResult, SearchResult
+from wnn2hdl.files import write_text
 
 _KINDS = (
     "errors.*",
@@ -42,7 +44,7 @@ def summary(run: FlightRun) -> dict[str, Any]:
 
 
 def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
-    """Write tables, GeoJSON, plots of errors and tracks, and what was learned; an earlier run's are removed.
+    """Write tables, GeoJSON, plots, a page, and what was learned; an earlier run's are removed.
 
     Where no truth is known there are no errors to plot.
 
@@ -53,13 +55,17 @@ def write_run(run: FlightRun, folder: Path) -> tuple[Path, ...]:
         InputError: the folder cannot be written.
     """
     files = [*write_results(folder, run.result)]
+    errors = None
     if any(method.errors_m for search in run.result.searches for method in search.methods):
         files += plot_errors(run.result, folder / "errors")
+        errors = folder / "errors.svg"
     for search in run.result.searches:
         raw = replace(search, methods=tuple(method for method in search.methods if not method.tracked))
         files += plot_tracks(
             raw, run.grid.image, run.grid.to_pixel, run.grid.gsd_m, folder / f"tracks_{search.key}"
         )
+    write_text(folder / PAGE_FILE, flight_page(run, errors))
+    files.append(folder / PAGE_FILE)
     if run.learned:
         run.learned.write(folder / "calibration.json")
         files.append(folder / "calibration.json")

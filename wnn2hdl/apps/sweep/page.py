@@ -1,6 +1,5 @@
 """The sweep as one HTML page, pictures included, that needs no other file."""
 
-import base64
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -8,7 +7,8 @@ from wnn2hdl.apps.sweep.pictures import draw_all
 from wnn2hdl.apps.sweep.pixels import PixelSets
 from wnn2hdl.apps.sweep.study import Outcome, circuits
 from wnn2hdl.files import write_text
-from wnn2hdl.report.page import environment
+from wnn2hdl.report.drawing import inlined
+from wnn2hdl.report.shell import environment
 
 PAGE_FILE = "index.html"
 
@@ -74,7 +74,7 @@ def write_page(outcome: Outcome, sets: PixelSets, pictures: Sequence[str], folde
         bits=" ".join(recipe.bits),
         pictures=[
             {
-                "data": base64.b64encode((folder / f"{name}.svg").read_bytes()).decode(),
+                "svg": inlined((folder / f"{name}.svg").read_text(), _CAPTIONS[name], name, "plot"),
                 "caption": _CAPTIONS[name],
             }
             for name in pictures

@@ -9,7 +9,7 @@ import numpy as np
 from wnn2hdl.apps.sweep.grid import Cell
 from wnn2hdl.apps.sweep.selection import Finalist, Surface, label
 from wnn2hdl.apps.sweep.trial import Record
-from wnn2hdl.report.charts import INK
+from wnn2hdl.report.drawing import INK, mark
 from wnn2hdl.report.plots import plot_style, save_plot
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def _accuracy_contour(figure: "Figure", surface: Surface, marked: Sequence[Cell]
         surface.rams, surface.address_bits, np.ma.masked_invalid(100 * surface.accuracy), levels=14
     )
     figure.colorbar(filled, label="mean accuracy on held-out images, %")
+    _tell_architectures(axes, surface)
     _architecture_axes(axes, surface, marked)
 
 
@@ -105,7 +106,18 @@ def _cost_contour(figure: "Figure", surface: Surface, marked: Sequence[Cell]) ->
     logarithm = np.ma.masked_invalid(np.log10(1 + surface.luts))
     filled = axes.contourf(surface.rams, surface.address_bits, logarithm, levels=14, cmap="magma")
     figure.colorbar(filled, label="log10(1 + mean LUTs per pixel)")
+    _tell_architectures(axes, surface)
     _architecture_axes(axes, surface, marked)
+
+
+def _tell_architectures(axes: "Axes", surface: Surface) -> None:
+    for row, n in enumerate(surface.address_bits):
+        for column, k in enumerate(surface.rams):
+            accuracy, luts = surface.accuracy[row, column], surface.luts[row, column]
+            if np.isfinite(accuracy):
+                place = axes.scatter(k, n, s=90, color=(0, 0, 0, 0), clip_on=False)
+                text = f"{label((n, k))}: {100 * accuracy:.2f} %, {luts:.1f} LUTs on average"
+                mark(place, text)
 
 
 def _architecture_axes(axes: "Axes", surface: Surface, marked: Sequence[Cell]) -> None:
@@ -131,7 +143,10 @@ def _histograms(figure: "Figure", finalists: Sequence[Finalist]) -> None:
     low, high = min(x.min() for x in values), max(x.max() for x in values)
     edges = np.linspace(low, max(high, low + 0.1), 41)
     for axes, finalist, accuracies, colour in zip(rows, finalists, values, _COLOURS, strict=False):
-        axes.hist(accuracies, bins=edges, color=colour)
+        counts, _, bars = axes.hist(accuracies, bins=edges, color=colour)
+        for count, low_edge, high_edge, bar in zip(counts, edges, edges[1:], bars, strict=False):
+            if count:
+                mark(bar, f"{low_edge:.2f} to {high_edge:.2f} %: {count:.0f} trials")
         axes.axvline(accuracies.mean(), color=INK, linestyle="--", linewidth=1)
         title = f"{label(finalist.cell)}: mean {accuracies.mean():.1f} %, {len(accuracies)} valid trials"
         axes.set_title(title, loc="left", fontsize="small")
@@ -152,7 +167,10 @@ def _fronts(figure: "Figure", clouds: Sequence[tuple[str, Points, Sequence[Recor
         axes.scatter(place, height, s=8, alpha=0.5, color=colour, linewidths=0, rasterized=True)
         steps = [record.luts or 0 for record in front]
         best = [100 * (record.circuit_accuracy or 0) for record in front]
-        axes.step(steps, best, where="post", marker="o", markersize=4, color=colour, label=f"{name}, front")
+        axes.step(steps, best, where="post", color=colour, label=f"{name}, front")
+        for record, luts_, share in zip(front, steps, best, strict=True):
+            (point,) = axes.plot(luts_, share, "o", markersize=4, color=colour)
+            mark(point, f"{record.name}: {luts_:,} LUTs, {share:.2f} %")
         seen += [*height, *best]
     most = max(1, *(max(luts, default=1) for _, (luts, _), _ in clouds))
     axes.set_xscale("symlog", linthresh=1)

@@ -73,7 +73,7 @@ def test_a_picture_becomes_a_map_polygons_an_overlay_and_a_summary(
 ) -> None:
     summary = scan(picture_file, tmp_path / "out")
     assert names(tmp_path / "out") == {
-        "classes.tif", "polygons.geojson", "overlay.png", "summary.json", "summary.md"
+        "classes.tif", "polygons.geojson", "overlay.png", "summary.html", "summary.json", "summary.md"
     }  # fmt: skip
     cleared = pixels[..., 0] >= 96
     assert np.array_equal(classes(tmp_path / "out"), cleared)
@@ -190,7 +190,7 @@ def test_a_folder_gives_each_picture_its_own_and_one_summary(
     write_png(chips / "a.png", pixels[:50, :60])
     write_png(chips / "b.png", pixels[50:, 60:])
     summary = scan(chips, tmp_path / "out")
-    assert names(tmp_path / "out") == {"a", "b", "summary.json", "summary.md"}
+    assert names(tmp_path / "out") == {"a", "b", "summary.html", "summary.json", "summary.md"}
     cleared = (pixels[:50, :60, 0] >= 96).sum() + (pixels[50:, 60:, 0] >= 96).sum()
     assert summary["deforested"]["pixels"] == cleared
     assert [x["input"] for x in summary["pictures"]] == [str(chips / "a.png"), str(chips / "b.png")]
@@ -242,6 +242,7 @@ def test_files_of_an_earlier_scan_do_not_stay_beside_new_ones(
         "classes.tif",
         "overlay.png",
         "summary.json",
+        "summary.html",
         "summary.md",
     }
 
@@ -331,7 +332,7 @@ def test_a_folder_takes_the_place_of_a_picture(scan: Scan, picture_file: Path, t
     (tmp_path / "out" / ".scan").mkdir()
     (tmp_path / "out" / ".scan" / "windows").write_text("of a killed scan")
     scan(picture_file.parent, tmp_path / "out")
-    assert names(tmp_path / "out") == {"picture", "summary.json", "summary.md"}
+    assert names(tmp_path / "out") == {"picture", "summary.html", "summary.json", "summary.md"}
 
 
 def test_a_folder_is_one_step_that_never_falls_back(model_file: Path, tmp_path: Path) -> None:
@@ -501,7 +502,7 @@ def test_no_name_changes_a_summary(red_model: WisardModel, pixels: NDArray[np.ui
     scanner = Scanner.open(tmp_path / "model.json", ScanOptions(), partial(run_locally, 1), lambda *_: None)
     summary = scanner.scan(folder, tmp_path / "out")
     assert summary["classes"][1]["class"] == HOSTILE + "x" * 5000
-    assert names(tmp_path / "out") == {HOSTILE, "summary.json", "summary.md"}
+    assert names(tmp_path / "out") == {HOSTILE, "summary.html", "summary.json", "summary.md"}
     page = (tmp_path / "out" / "summary.md").read_text()
     headings = [line for line in page.splitlines() if line.startswith("#")]
     assert [line.split()[1] for line in headings] == ["Scan", "Pictures", "How"]

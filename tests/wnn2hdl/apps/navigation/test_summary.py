@@ -29,6 +29,7 @@ def test_files_are_written(run: FlightRun, tmp_path: Path) -> None:
     assert {path.name for path in files} >= {
         "flight.json",
         "flight.md",
+        "flight.html",
         "table.csv",
         "errors.png",
         "tracks_map.png",
