@@ -10,7 +10,7 @@ from wnn2hdl.api import Model, evaluate, evaluate_table, load, train, train_tabl
 from wnn2hdl.dataset import from_masks
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import write_png
-from wnn2hdl.ir import Neighbourhood, WisardModel
+from wnn2hdl.ir import Context, Neighbourhood, WisardModel
 from wnn2hdl.samples import landscape
 from wnn2hdl.training.tables import TableOptions
 
@@ -49,6 +49,9 @@ def test_a_budget_and_a_neighbourhood_train_other_classifiers(arrays: Arrays) ->
     window = train(*arrays, neighbourhood=3)
     assert isinstance(window.model, WisardModel)
     assert isinstance(window.model.encoder, Neighbourhood)
+    counts = train(*arrays, context=3)
+    assert isinstance(counts.model, WisardModel)
+    assert isinstance(counts.model.encoder, Context)
 
 
 def test_a_model_says_what_it_is_and_can_be_kept(model: Model, tmp_path: Path) -> None:

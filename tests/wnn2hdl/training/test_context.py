@@ -12,7 +12,7 @@ from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.images import UNLABELLED, Picture
 from wnn2hdl.ir import Context, WisardModel
 from wnn2hdl.training.budget import LIGHT, NESTED
-from wnn2hdl.training.context import _draw, _logits, _shares_right, train_context
+from wnn2hdl.training.context import _draw, _logits, _right_outside, _shares_right, train_context
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -60,6 +60,14 @@ def test_the_table_answers_as_a_regression_on_the_bits() -> None:
     counted = np.array([[900, 100, 450, 0], [100, 900, 50, 0]])
     assert (_logits(counted) > 0).tolist() == [False, True, False, True]
     assert _logits(counted)[2] == pytest.approx(np.log(1 / 9), abs=0.02)
+
+
+def test_bits_are_judged_on_images_that_the_regression_has_not_seen() -> None:
+    one = np.array([[100, 0], [0, 100]])
+    opposed = np.stack([one, one[::-1]])
+    assert _right_outside(opposed) == 0
+    assert _right_outside(np.stack([one, one])) == 1
+    assert _right_outside(one[np.newaxis]) == 1
 
 
 def test_pixels_that_are_not_labelled_are_not_drawn() -> None:
