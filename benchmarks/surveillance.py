@@ -120,9 +120,9 @@ def circuits(mappings: int, seed: int) -> dict[str, list[ModelTrainer]]:
         images = [colour_histogram(image, len(CLASSES)) for image in dataset]
         return select_bits(images, CLASSES, luts=count, seed=seed)
 
-    def comparisons(count: int, dataset: Dataset) -> WisardModel:
+    def comparisons(count: int, smooth: bool, dataset: Dataset) -> WisardModel:
         images = [colour_histogram(image, len(CLASSES)) for image in dataset]
-        return select_comparisons(images, CLASSES, luts=count, seed=seed)
+        return select_comparisons(images, CLASSES, luts=count, seed=seed, smooth=smooth)
 
     def compared(shape: Comparison, dataset: Dataset) -> WisardModel:
         return threshold(shape, [colour_histogram(image, len(CLASSES)) for image in dataset])
@@ -139,7 +139,13 @@ def circuits(mappings: int, seed: int) -> dict[str, list[ModelTrainer]]:
         discriminators(seed + i) for i in range(mappings)
     ]
     found |= {f"bit selection, {count} LUT": [partial(bit_selection, count)] for count in (1, 2)}
-    found |= {f"comparisons of channels, {count} LUTs": [partial(comparisons, count)] for count in WITHIN}
+    found |= {
+        f"comparisons of channels, {count} LUTs{', smooth aim' if smooth else ''}": [
+            partial(comparisons, count, smooth)
+        ]
+        for count in WITHIN
+        for smooth in (False, True)
+    }
     return found | {f"{size}x{size} neighbourhood": [neighbourhood(size)] for size in (3, 5)}
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -33,8 +34,9 @@ FINALISTS = 3
 
 SATURATION = 0.9
 
-WITHIN = (7,)
-"""LUTs per pixel that comparisons are looked for within; more than that gained nothing on unseen images."""
+WITHIN = (7, 14)
+"""LUTs per pixel that comparisons are looked for within: of one pair of channels, and of two. More than that
+gained nothing on unseen images."""
 
 LIGHT = "in_light"
 """Key in `WisardModel.training` of how accurate the classifier was in cross-validation, by exposure."""
@@ -131,8 +133,8 @@ def measure(
 ) -> tuple[Point, ...]:
     """All candidates with their costs and accuracies, for `pareto_front` and the plot.
 
-    Candidates are bit selection at 1, 2 and 3 LUTs and comparisons of channels within each of `WITHIN` (for
-    two classes), and of the `trials` random mappings of
+    Candidates are bit selection at 1, 2 and 3 LUTs and comparisons of channels within each of `WITHIN`, that
+    aim at the labels or at a smooth classifier (for two classes), and of the `trials` random mappings of
     the discriminators that do not saturate the `FINALISTS` most accurate: as exact circuits, and as circuits
     that are free outside of a care set taken from the training images. What such a circuit answers outside is
     part of the candidate, in cross-validation too: it becomes a plain look-up table.
@@ -254,13 +256,15 @@ def _comparisons(
 ) -> Iterator[tuple[str, Trainer]]:
     if len(classes) != 2:
         return
-    for luts in WITHIN:
+    for luts, smooth in product(WITHIN, (False, True)):
 
-        def train(chosen: Sequence[int], luts: int = luts) -> WisardModel:
-            return select_comparisons([images[i] for i in chosen], classes, luts=luts, seed=seed)
+        def train(chosen: Sequence[int], luts: int = luts, smooth: bool = smooth) -> WisardModel:
+            return select_comparisons(
+                [images[i] for i in chosen], classes, luts=luts, seed=seed, smooth=smooth
+            )
 
         if luts_per_pixel is None or luts <= luts_per_pixel:
-            yield f"comparisons, {luts} LUTs at most", train
+            yield f"comparisons{' of a smooth aim' if smooth else ''}, {luts} LUTs at most", train
 
 
 def _discriminators(

@@ -2,8 +2,9 @@
 
 Candidates are comparisons of two channels with small weights and few bits, and the channels' highest bits.
 They are added one by one: of all comparisons and offsets that the LUTs pay for, the one with which a table
-over what was chosen is right most often, on training pixels under varied light. What a comparison costs is
-what it is mapped to.
+over what was chosen is right most often, on training pixels under varied light. What is right are the labels,
+or what a smooth classifier of any cost makes of them, which says more of other images where ratios tell the
+classes apart. What a comparison costs is what it is mapped to.
 """
 
 from collections.abc import Sequence
@@ -29,6 +30,7 @@ from wnn2hdl.ir.relational import Weighted, pixel_codes
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.training.bitselect import Histogram, look_up_table
 from wnn2hdl.training.bitselect.drift import unpacked
+from wnn2hdl.training.bitselect.reference import fit_ratio_reference
 from wnn2hdl.training.light import varied
 from wnn2hdl.wisard import require_every_class
 
@@ -54,8 +56,8 @@ bright pixels do not count as dark ones."""
 MOST_BITS = 13
 """Bits that a comparison reads: up to here it takes 4 to 6 LUTs, with one bit more 9."""
 
-LEAST_GAIN = 0.002
-"""Share of the training pixels that another comparison has to put right."""
+LEAST_GAIN = 1e-4
+"""Share of the training pixels that another comparison is expected to put right."""
 
 PRIOR = 1e-6
 """Weight of all colours together over that of the training pixels: on codes that these do not have, the table
@@ -66,8 +68,13 @@ _TRIES = 8
 
 
 @dataclass(frozen=True, eq=False)
-class _Pixels:
-    """Training pixels under varied light: uint8 ``[n, 3]``, and 1 or -1 for the second or the first class."""
+class LitPixels:
+    """Training pixels under varied light.
+
+    Attributes:
+        pixels: uint8 ``[n, 3]``.
+        sign: by how much the second class is more probable than the first, -1 to 1, ``[n]``; a label is sure.
+    """
 
     pixels: NDArray[np.uint8]
     sign: NDArray[np.float64]
@@ -75,14 +82,14 @@ class _Pixels:
 
 @dataclass(frozen=True)
 class _Addition:
-    """Bits that may be added, a comparison the last, and the share of the pixels that are then right."""
+    """Bits that may be added, a comparison the last, and the share of pixels that one expects to be right."""
 
     right: float
     names: tuple[str, ...]
 
 
 def select_comparisons(
-    images: Sequence[Histogram], classes: tuple[str, ...], *, luts: int, seed: int
+    images: Sequence[Histogram], classes: tuple[str, ...], *, luts: int, seed: int, smooth: bool
 ) -> WisardModel:
     """Choose comparisons and bits, and a table over them, that together map to at most ``luts`` LUTs.
 
@@ -91,6 +98,7 @@ def select_comparisons(
         classes: two class names, the background first.
         luts: at least `FEWEST_LUTS`.
         seed: of the pixels that are drawn and their light.
+        smooth: agree with `fit_ratio_reference`, not with the labels.
 
     Returns:
         A model of one RAM per class that reads every chosen bit (see `look_up_table`).
@@ -105,29 +113,33 @@ def select_comparisons(
             hint="train another classifier",
         )
     require_every_class(classes, (any(image.counts[i].any() for image in images) for i in (0, 1)))
-    training = _draw(images, np.random.default_rng(seed))
+    training = draw_pixels(images, np.random.default_rng(seed), smooth=smooth)
     chosen: tuple[str, ...] = ()
     right = 0.0
     while found := _affordable(training, chosen, luts):
         if chosen and found.right < right + LEAST_GAIN:
             break
         chosen, right = chosen + found.names, found.right
-    record = {"method": "comparisons", "luts": luts, "seed": seed, "images": len(images)}
+    record = {"method": "comparisons", "luts": luts, "smooth": smooth, "seed": seed, "images": len(images)}
     return look_up_table(Relational(chosen), classes, _answers(training, chosen), record)
 
 
-def _draw(images: Sequence[Histogram], rng: np.random.Generator) -> _Pixels:
-    pixels, signs = [], []
+def draw_pixels(images: Sequence[Histogram], rng: np.random.Generator, *, smooth: bool) -> LitPixels:
+    """`PIXELS` of each image of two classes, `COPIES` times each; ``smooth`` as in `select_comparisons`."""
+    pixels, labels = [], []
     for image in images:
         counts = image.counts.ravel()
         drawn = rng.choice(len(counts), PIXELS, p=counts / counts.sum())
         colours = unpacked(image.colours.astype(np.int64)).astype(np.uint8)[drawn % len(image.colours)]
         pixels += [varied(colours, rng) for _ in range(COPIES)]
-        signs += [np.where(drawn >= len(image.colours), 1.0, -1.0)] * COPIES
-    return _Pixels(np.concatenate(pixels), np.concatenate(signs))
+        labels += [(drawn >= len(image.colours)).astype(np.int64)] * COPIES
+    lit, owners = np.concatenate(pixels), np.concatenate(labels)
+    # So rare a class that none of its pixels was drawn leaves nothing to fit.
+    fits = smooth and owners.any() and not owners.all()
+    return LitPixels(lit, 2.0 * (fit_ratio_reference(lit, owners)(lit) if fits else owners) - 1)
 
 
-def _affordable(training: _Pixels, chosen: tuple[str, ...], luts: int) -> _Addition | None:
+def _affordable(training: LitPixels, chosen: tuple[str, ...], luts: int) -> _Addition | None:
     """The best addition that the LUTs pay for; None if none of the best few can be paid for."""
     codes: dict[tuple[str, ...], NDArray[np.int64]] = {}
     additions = []
@@ -169,7 +181,7 @@ def _shapes() -> tuple[Comparison, ...]:
 
 
 def _best_offset(
-    training: _Pixels, code: NDArray[np.int64], shape: Comparison, above: tuple[str, ...]
+    training: LitPixels, code: NDArray[np.int64], shape: Comparison, above: tuple[str, ...]
 ) -> _Addition:
     """The offset with which a comparison helps most beside what the code holds."""
     slack = shape.slack(training.pixels)
@@ -183,7 +195,7 @@ def _best_offset(
     return _Addition(float((1 + scores[best] / len(code)) / 2), (*above, name))
 
 
-def _answers(training: _Pixels, names: tuple[str, ...]) -> NDArray[np.int64]:
+def _answers(training: LitPixels, names: tuple[str, ...]) -> NDArray[np.int64]:
     """The class of each code: int64 ``[2**len(names)]``."""
     size = 1 << len(names)
     masses = np.bincount(pixel_codes(names, training.pixels), training.sign, size)

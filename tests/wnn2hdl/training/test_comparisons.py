@@ -1,5 +1,7 @@
 """The choice of comparisons: on ground whose classes differ in a ratio, whatever the light."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from wnn2hdl.dataset import ColourHistogram, LabelledImage, colour_histogram
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import Relational, WisardModel
 from wnn2hdl.training.budget import pixel_luts
-from wnn2hdl.training.comparisons import select_comparisons
+from wnn2hdl.training.comparisons import draw_pixels, select_comparisons
 from wnn2hdl.training.crossval import pixels_right
 
 CLASSES = ("forest", "deforested")
@@ -23,9 +25,10 @@ def scene(light: float, seed: int) -> ColourHistogram:
     return colour_histogram(LabelledImage("scene", pixels.astype(np.uint8), labels), 2)
 
 
-@pytest.fixture(scope="module")
-def model() -> WisardModel:
-    return select_comparisons([scene(1.0, seed) for seed in range(2)], CLASSES, luts=6, seed=0)
+@pytest.fixture(scope="module", params=[False, True], ids=["labels", "smooth"])
+def model(request: pytest.FixtureRequest) -> WisardModel:
+    images = [scene(1.0, seed) for seed in range(2)]
+    return select_comparisons(images, CLASSES, luts=6, seed=0, smooth=request.param)
 
 
 def test_red_is_compared_with_blue_within_the_luts(model: WisardModel) -> None:
@@ -47,11 +50,34 @@ def test_what_is_brighter_than_all_training_pixels_does_not_count_as_dark(model:
 
 def test_the_choice_depends_on_the_seed_alone() -> None:
     images = [scene(1.0, seed) for seed in range(2)]
-    first, again = (select_comparisons(images, CLASSES, luts=5, seed=3) for _ in range(2))
+    first, again = (select_comparisons(images, CLASSES, luts=5, seed=3, smooth=True) for _ in range(2))
     assert first.to_json() == again.to_json()
+
+
+def test_a_smooth_aim_does_not_follow_labels_that_contradict_the_ratio() -> None:
+    images = [scene(1.0, seed) for seed in range(2)]
+    wrong = scene(1.0, seed=2)
+    mislabelled = replace(
+        wrong, counts=np.where(wrong.pixels[:, 0] % 4 == 0, wrong.counts[::-1], wrong.counts)
+    )
+    training = {
+        smooth: draw_pixels([*images, mislabelled], np.random.default_rng(0), smooth=smooth)
+        for smooth in (False, True)
+    }
+    red, _, blue = training[True].pixels.T
+    cleared = red > 0.75 * blue
+    assert set(training[False].sign) == {-1.0, 1.0}
+    assert ((training[False].sign > 0) == cleared).mean() < 0.95
+    assert ((training[True].sign > 0) == cleared).mean() > 0.98
+
+
+def test_images_of_one_class_alone_leave_the_smooth_classifier_out() -> None:
+    image = scene(1.0, seed=0)
+    forest = replace(image, counts=np.stack([image.counts.sum(axis=0), np.zeros_like(image.counts[0])]))
+    assert set(draw_pixels([forest], np.random.default_rng(0), smooth=True).sign) == {-1.0}
 
 
 @pytest.mark.parametrize(("classes", "luts"), [(("a", "b", "c"), 6), (CLASSES, 3)])
 def test_other_classes_and_too_few_luts_are_refused(classes: tuple[str, ...], luts: int) -> None:
     with pytest.raises(InputError, match="comparisons separate two classes and take 4 LUTs or more"):
-        select_comparisons([scene(1.0, 0)], classes, luts=luts, seed=0)
+        select_comparisons([scene(1.0, 0)], classes, luts=luts, seed=0, smooth=False)

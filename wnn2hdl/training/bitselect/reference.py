@@ -61,6 +61,33 @@ def fit_window_reference(
     Returns:
         a function from mean colours, float64 ``[m, 3]``, to the probability of class 1, float64 ``[m]``.
     """
+    fitted = _quadratic(np.log(means + DARKEST), labels)
+    return lambda colours: fitted(np.log(colours + DARKEST))
+
+
+def fit_ratio_reference(
+    pixels: NDArray[np.uint8], labels: NDArray[np.int64]
+) -> Callable[[NDArray[np.uint8]], NDArray[np.float64]]:
+    """A logistic regression on the logarithms of red over blue and red over green, squares and product.
+
+    More light multiplies all channels alike and leaves their ratios as they are.
+
+    Args:
+        pixels: uint8 ``[samples, 3]``.
+        labels: 0 or 1, ``[samples]``.
+
+    Returns:
+        a function from pixels, uint8 ``[m, 3]``, to the probability of class 1, float64 ``[m]``.
+    """
+    fitted = _quadratic(_ratios(pixels), labels)
+    return lambda others: fitted(_ratios(others))
+
+
+def _quadratic(
+    features: NDArray[np.float64], labels: NDArray[np.integer]
+) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """A logistic regression on features ``[samples, n]``, their squares and products."""
+    # scikit-learn takes a second to import, which no command should wait for that does not use it.
     from sklearn.linear_model import LogisticRegression
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import PolynomialFeatures, StandardScaler
@@ -71,8 +98,13 @@ def fit_window_reference(
         StandardScaler(),
         LogisticRegression(solver="newton-cholesky"),
     )
-    regression.fit(np.log(means + DARKEST), labels)
-    return lambda colours: np.asarray(regression.predict_proba(np.log(colours + DARKEST))[:, 1])
+    regression.fit(features, labels)
+    return lambda others: np.asarray(regression.predict_proba(others)[:, 1])
+
+
+def _ratios(pixels: NDArray[np.uint8]) -> NDArray[np.float64]:
+    red, green, blue = np.log(pixels.astype(np.float64) + DARKEST).T
+    return np.stack([red - blue, red - green], axis=-1)
 
 
 def _linear(rgb: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -1,7 +1,7 @@
 import numpy as np
 
 from wnn2hdl.training.bitselect.drift import Colours
-from wnn2hdl.training.bitselect.reference import fit_reference
+from wnn2hdl.training.bitselect.reference import fit_ratio_reference, fit_reference
 
 
 def test_reference_learns_that_red_means_the_second_class() -> None:
@@ -22,3 +22,14 @@ def test_reference_changes_smoothly_between_colours_it_has_not_seen() -> None:
     probability = fit_reference(Colours(rgb, np.array([[3.0, 1], [1, 3]])))
     between = probability(np.array([[red, 40, 40] for red in range(20, 91)]))
     assert (np.diff(between) > 0).all()
+
+
+def test_reference_of_ratios_says_the_same_in_twice_the_light() -> None:
+    rng = np.random.default_rng(0)
+    labels = rng.integers(0, 2, 2000)
+    blue = rng.uniform(40, 110, len(labels))
+    red = blue * np.where(labels == 1, 1.0, 0.6) * rng.uniform(0.8, 1.2, len(labels))
+    pixels = np.stack([red, rng.uniform(30, 110, len(labels)), blue], axis=1).astype(np.uint8)
+    probability = fit_ratio_reference(pixels, labels)
+    assert ((probability(pixels) > 0.5) == labels).mean() > 0.95
+    assert ((probability(2 * pixels) > 0.5) == labels).mean() > 0.95
