@@ -12,8 +12,11 @@ from wnn2hdl.evaluation.light import brighter_figures, brighter_warning
 from wnn2hdl.ir import WisardModel, picture_encoder
 from wnn2hdl.ir.pixel_bits import PIXEL_BIT_NAMES
 from wnn2hdl.training.budget import LIGHT, NESTED, WITHIN
-from wnn2hdl.training.discriminators import LEFT_OUT
+from wnn2hdl.training.discriminators import IDENTICAL, LEFT_OUT
 from wnn2hdl.training.promise import OTHERS
+
+_MOST_GROUPS = 3
+"""Groups of identical images that are named."""
 
 
 def train_summary(model: WisardModel, output: Path, images: int) -> dict[str, Any]:
@@ -70,8 +73,16 @@ def train_sentence(summary: dict[str, Any]) -> str:
         if all(name in PIXEL_BIT_NAMES for name in summary["bits"]):
             lines.append(
                 "comparisons of channels hold in changed light, and take more LUTs: train with "
-                f"--luts-per-pixel {max(WITHIN)}"
+                f"--luts-per-pixel {min(WITHIN)}"
             )
+    identical = summary["training"][IDENTICAL]
+    if identical:
+        groups = "; ".join(", ".join(names) for names in identical[:_MOST_GROUPS])
+        more = f" and {len(identical) - _MOST_GROUPS} more groups" if len(identical) > _MOST_GROUPS else ""
+        lines.append(
+            f"images that show the same: {groups}{more}; accuracy on images that were not trained on is "
+            "flattered, so keep one of each"
+        )
     left_out = summary["training"][LEFT_OUT]
     if left_out["pixels"]:
         lines.append(f"{left_out['share']:.2%} of the pixels left out: not labelled, or no data")

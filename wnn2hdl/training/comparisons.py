@@ -135,8 +135,9 @@ def draw_pixels(images: Sequence[Histogram], rng: np.random.Generator, *, smooth
         labels += [(drawn >= len(image.colours)).astype(np.int64)] * COPIES
     lit, owners = np.concatenate(pixels), np.concatenate(labels)
     # So rare a class that none of its pixels was drawn leaves nothing to fit.
-    fits = smooth and owners.any() and not owners.all()
-    return LitPixels(lit, 2.0 * (fit_ratio_reference(lit, owners)(lit) if fits else owners) - 1)
+    if smooth and owners.any() and not owners.all():
+        return LitPixels(lit, 2 * fit_ratio_reference(lit, owners)(lit) - 1)
+    return LitPixels(lit, np.where(owners == 1, 1.0, -1.0))
 
 
 def _affordable(training: LitPixels, chosen: tuple[str, ...], luts: int) -> _Addition | None:

@@ -18,14 +18,13 @@ from numpy.typing import NDArray
 
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.images import exposed
 from wnn2hdl.ir import CHANNELS, Comparison, Context, WisardModel, all_codes, codes_to_bits
 from wnn2hdl.ir.context import Count, box_sums
 from wnn2hdl.ir.relational import Weighted
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import look_up_table
 from wnn2hdl.training.budget import LIGHT, NESTED
-from wnn2hdl.training.crossval import EXPOSURES, FOLDS
+from wnn2hdl.training.crossval import EXPOSURES, FOLDS, picture_shares_right
 from wnn2hdl.training.light import varied
 from wnn2hdl.training.promise import light_figures
 from wnn2hdl.wisard import require_every_class
@@ -53,9 +52,6 @@ RIDGE = 1.0
 
 _STEPS = 8
 """Newton steps of the regression."""
-
-_STRIP = 512
-"""Rows of a picture that are classified together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +107,7 @@ def train_context(dataset: Dataset, size: int, *, seed: int, progress: Progress)
         chosen = _choose([s for i, s in enumerate(samples) if i % folds != fold], size, dataset.classes, seed)
         inside.append(" ".join(_encoder(chosen).planes))
         for i in range(fold, len(dataset), folds):
-            shares[i] = _shares_right(chosen, dataset.load(dataset.names[i]))
+            shares[i] = picture_shares_right(chosen, dataset.load(dataset.names[i]))
     # An image of which nothing can be judged says nothing.
     judged = shares[~np.isnan(shares).any(axis=1)]
     figures: dict[str, Any] = {NESTED: inside, LIGHT: light_figures(judged), "images": list(dataset.names)}
@@ -239,21 +235,3 @@ def _logits(counted: NDArray[np.int64]) -> NDArray[np.float64]:
         # The constant of a training without one of the classes has no curvature.
         weights += np.linalg.solve(curvature + 1e-6 * np.eye(len(curvature)), gradient)
     return np.asarray(inputs @ weights)
-
-
-def _shares_right(model: WisardModel, image: LabelledImage) -> NDArray[np.float64]:
-    """Share of an image's labelled pixels that are right, for each of `EXPOSURES`; NaN if it has none."""
-    encoder = _encoder(model)
-    halo, answers = encoder.halo, model.evaluate_all_codes()
-    labels, used = image.label_picture, image.usable(halo)
-    if not used.any():
-        return np.full(len(EXPOSURES), np.nan)
-    right = np.zeros(len(EXPOSURES))
-    padded = np.pad(image.picture, ((halo, halo), (halo, halo), (0, 0)), mode="edge")
-    for top in range(0, len(labels), _STRIP):
-        rows = slice(top, top + _STRIP)
-        strip = padded[top : top + _STRIP + 2 * halo]
-        for position, exposure in enumerate(EXPOSURES):
-            found = answers[encoder.codes(exposed(strip, exposure))]
-            right[position] += (found == labels[rows])[used[rows]].sum()
-    return np.asarray(right / used.sum())

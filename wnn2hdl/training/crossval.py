@@ -5,12 +5,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.dataset import ColourHistogram
+from wnn2hdl.dataset import ColourHistogram, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import exposed
-from wnn2hdl.ir import WisardModel, pixel_encoder
+from wnn2hdl.ir import WisardModel, picture_encoder, pixel_encoder
 
 FOLDS = 5
+
+STRIP = 512
+"""Rows of a picture that are classified together."""
 
 Trainer = Callable[[Sequence[int]], WisardModel]
 """Trains a pixel model on the images with these positions."""
@@ -81,3 +84,30 @@ def pixels_right(model: WisardModel, image: ColourHistogram, exposure: float = 1
     codes = pixel_encoder(model).codes(exposed(image.pixels, exposure))
     answers = model.evaluate_all_codes()[codes]
     return int(image.counts[answers, np.arange(len(answers))].sum())
+
+
+def picture_shares_right(model: WisardModel, image: LabelledImage) -> NDArray[np.float64]:
+    """Share of an image's labelled pixels that a model which looks around puts into their class.
+
+    A picture's borders are repeated outwards; pixels beside one without data are left out.
+
+    Returns:
+        float64 ``[exposures]``, for each of `EXPOSURES`; NaN if no pixel can be judged.
+
+    Raises:
+        InputError: only some pixels of the image are here.
+    """
+    encoder = picture_encoder(model)
+    halo, answers = encoder.halo, model.evaluate_all_codes()
+    labels, used = image.label_picture, image.usable(halo)
+    if not used.any():
+        return np.full(len(EXPOSURES), np.nan)
+    right = np.zeros(len(EXPOSURES))
+    padded = np.pad(image.picture, ((halo, halo), (halo, halo), (0, 0)), mode="edge")
+    for top in range(0, len(labels), STRIP):
+        rows = slice(top, top + STRIP)
+        strip = padded[top : top + STRIP + 2 * halo]
+        for position, exposure in enumerate(EXPOSURES):
+            found = answers[encoder.codes(exposed(strip, exposure))]
+            right[position] += (found == labels[rows])[used[rows]].sum()
+    return np.asarray(right / used.sum())

@@ -1,5 +1,6 @@
 """From labelled images to a trained model."""
 
+import hashlib
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,10 @@ from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 LEFT_OUT = "left_out"
 """Of a model's training: pixels of the images that were not labelled or without data, and their share of
 all."""
+
+
+IDENTICAL = "identical_images"
+"""Of a model's training: names of images that show the same pixels, one list for each picture."""
 
 
 def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
@@ -91,17 +96,24 @@ def _balanced(histograms: NDArray[np.int64]) -> NDArray[np.int64]:
 def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> WisardModel:
     """The model with a memory of the colours of its training images; these are read once more.
 
-    Its training records how many pixels of the images were left out: not labelled, or without data.
+    Its training records how many pixels of the images were left out, not labelled or without data, and which
+    images show the same.
 
     Raises:
         InputError: an image cannot be read.
     """
     seen = np.zeros(1 << COLOURS.width, dtype=np.bool_)
     used = left_out = 0
+    same: dict[bytes, list[str]] = {}
     for image in reported(dataset, "noting colours", len(dataset), progress):
         seen[COLOURS.codes(image.pixels)] = True
         used, left_out = used + len(image.labels), left_out + image.left_out
-    figures = {LEFT_OUT: {"pixels": left_out, "share": left_out / (used + left_out)}}
+        shown = image.pixels if image.scene is None else image.scene.picture
+        same.setdefault(hashlib.sha256(shown.tobytes()).digest(), []).append(image.name)
+    figures = {
+        LEFT_OUT: {"pixels": left_out, "share": left_out / (used + left_out)},
+        IDENTICAL: [names for names in same.values() if len(names) > 1],
+    }
     return replace(model, colours=np.flatnonzero(seen), training=dict(model.training) | figures)
 
 

@@ -1,6 +1,8 @@
 """Training of models that look at a pixel's neighbours."""
 
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,15 +12,36 @@ from wnn2hdl.errors import InputError
 from wnn2hdl.ir import WisardModel
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import LEAST_SHARE, LUTS, main_drift, select_neighbourhood
+from wnn2hdl.training.budget import LIGHT
+from wnn2hdl.training.crossval import EXPOSURES, FOLDS, picture_shares_right
+from wnn2hdl.training.promise import light_figures
 
 WINDOWS = 8000
 """Windows drawn from each image, wherever they lie wholly inside data; more changed little."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """Windows of one image.
+
+    Attributes:
+        windows: uint8 ``[n, size, size, 3]``.
+        labels: the classes of their middles, uint8 ``[n]``.
+        mean: colour of its background, float64 ``[3]``; None if it has hardly any.
+    """
+
+    windows: NDArray[np.uint8]
+    labels: NDArray[np.uint8]
+    mean: NDArray[np.float64] | None
 
 
 def train_neighbourhood(
     dataset: Dataset, size: int, *, luts_per_pixel: int | None, seed: int, progress: Progress
 ) -> WisardModel:
     """The classifier that reads six tables over the window around a pixel by one LUT.
+
+    What it promises is measured in cross-validation by image, unless there is one image, or a class that only
+    the images of one fold show.
 
     Args:
         dataset: whole images; one is in memory at a time.
@@ -37,23 +60,57 @@ def train_neighbourhood(
             value=f"{luts_per_pixel} allowed",
             hint="allow more, or train without --neighbourhood",
         )
-    windows, labels, means = [], [], []
+    images = []
     for position, image in enumerate(reported(dataset, "reading images", len(dataset), progress)):
-        drawn = _draw(image, size, np.random.default_rng([seed, position]))
-        windows.append(drawn[0])
-        labels.append(drawn[1])
+        windows, labels = _draw(image, size, np.random.default_rng([seed, position]))
         background = image.pixels[image.labels == 0]
-        if len(background) > LEAST_SHARE * len(image.pixels):
-            means.append(background.mean(axis=0))
-    model = select_neighbourhood(
-        np.concatenate(windows),
-        np.concatenate(labels),
-        main_drift(np.array(means)),
-        dataset.classes,
-        seed=seed,
-        progress=lambda done, total: progress("choosing tables", done, total),
+        enough = len(background) > LEAST_SHARE * len(image.pixels)
+        images.append(_Drawn(windows, labels, background.mean(axis=0) if enough else None))
+    model = _select(
+        images, dataset.classes, seed, lambda done, total: progress("choosing tables", done, total)
     )
-    return replace(model, training={**model.training, "images": list(dataset.names)})
+    figures: dict[str, Any] = {"images": list(dataset.names)}
+    light = _shares_right(images, dataset, seed, progress)
+    if len(light) > 1:
+        figures[LIGHT] = light_figures(light)
+    return replace(model, training={**model.training, **figures})
+
+
+def _select(
+    images: Sequence[_Drawn], classes: tuple[str, ...], seed: int, progress: Callable[[int, int], None]
+) -> WisardModel:
+    """The classifier for these images."""
+    return select_neighbourhood(
+        np.concatenate([image.windows for image in images]),
+        np.concatenate([image.labels for image in images]),
+        main_drift(np.array([image.mean for image in images if image.mean is not None])),
+        classes,
+        seed=seed,
+        progress=progress,
+    )
+
+
+def _shares_right(
+    images: Sequence[_Drawn], dataset: Dataset, seed: int, progress: Progress
+) -> NDArray[np.float64]:
+    """Share of right pixels of each image that can be judged, by a classifier that has not seen it.
+
+    Returns:
+        float64 ``[judged, exposures]``; none are judged if a fold has no classifier.
+    """
+    folds = min(FOLDS, len(images))
+    outside = [[image for i, image in enumerate(images) if i % folds != fold] for fold in range(folds)]
+    shares = np.full((len(images), len(EXPOSURES)), np.nan)
+    if all({*np.concatenate([[], *(image.labels for image in others)])} == {0, 1} for others in outside):
+        for fold, others in enumerate(reported(outside, "cross-validating", folds, progress)):
+            model = _select(others, dataset.classes, seed, _silent)
+            for i in range(fold, len(images), folds):
+                shares[i] = picture_shares_right(model, dataset.load(dataset.names[i]))
+    return np.asarray(shares[~np.isnan(shares).any(axis=1)])
+
+
+def _silent(done: int, total: int) -> None:
+    """A choice inside a fold is one step of the whole."""
 
 
 def _draw(

@@ -1,6 +1,7 @@
 """`train` as a user meets it."""
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -114,6 +115,15 @@ def test_a_classifier_that_brighter_light_misleads_comes_with_advice(run: Run, t
     warning, advice = run(*levels).stdout.splitlines()[-2:]
     assert warning.startswith("brighter ground of the same kind may be answered differently: R7, R6 are not")
     assert advice.endswith("train with --luts-per-pixel 7")
+
+
+def test_images_that_show_the_same_get_one_line(run: Run, folders: tuple[Path, Path], tmp_path: Path) -> None:
+    images, masks = folders
+    words = ("train", "--images", images, "--masks", masks, "-o", tmp_path / "m.json")
+    assert "show the same" not in run(*words).stdout
+    for folder in folders:
+        shutil.copy(folder / "a.png", folder / "b.png")
+    assert "images that show the same: a.png, b.png; accuracy" in run(*words).stdout
 
 
 def test_only_a_choice_can_be_nested(run: Run, folders: tuple[Path, Path], tmp_path: Path) -> None:

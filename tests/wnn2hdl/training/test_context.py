@@ -12,7 +12,7 @@ from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.images import UNLABELLED, Picture
 from wnn2hdl.ir import Context, WisardModel
 from wnn2hdl.training.budget import LIGHT, NESTED
-from wnn2hdl.training.context import _draw, _logits, _right_outside, _shares_right, train_context
+from wnn2hdl.training.context import _draw, _logits, _right_outside, train_context
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -47,12 +47,6 @@ def test_the_seed_decides_the_pixels_that_are_drawn() -> None:
     assert not np.array_equal(one.sums, other.sums)
     assert one.sums.max() == 9
     assert one.own.shape == one.sums.shape
-
-
-def test_shares_are_of_whole_pictures_whose_borders_are_repeated(trained: WisardModel) -> None:
-    dataset = from_samples(1, 96, seed=50)
-    result = evaluate(model_classifier(trained), dataset, silent)
-    assert _shares_right(trained, next(iter(dataset)))[1] == pytest.approx(result.accuracy)
 
 
 def test_the_table_answers_as_a_regression_on_the_bits() -> None:

@@ -3,11 +3,18 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from wnn2hdl.dataset import ColourHistogram
+from wnn2hdl.dataset import ColourHistogram, from_samples
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import BitSelect, WisardModel
+from wnn2hdl.evaluation.accuracy import evaluate
+from wnn2hdl.evaluation.classifiers import model_classifier
+from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, WisardModel
 from wnn2hdl.training.bitselect import look_up_table
-from wnn2hdl.training.crossval import cross_validate, cross_validated, pixels_right
+from wnn2hdl.training.crossval import (
+    cross_validate,
+    cross_validated,
+    picture_shares_right,
+    pixels_right,
+)
 
 ENCODER = BitSelect(("R7",))
 
@@ -58,3 +65,11 @@ def test_other_light_moves_pixels_into_other_codes() -> None:
     assert found == [5, 12, 7]
     right = cross_validated([picture, picture], lambda chosen: model, (0.5, 1.0, 1.7))
     assert right.tolist() == [found, found]
+
+
+def test_shares_are_of_whole_pictures_whose_borders_are_repeated() -> None:
+    dataset = from_samples(1, 48, seed=50)
+    taps = tuple(Tap(row, 1, BitSelect(("R6", "B6")), 0b0111) for row in (0, 2))
+    model = look_up_table(Neighbourhood(3, taps), dataset.classes, np.array([1, 0, 1, 0]), {})
+    result = evaluate(model_classifier(model), dataset, lambda step, done, total: None)
+    assert picture_shares_right(model, next(iter(dataset)))[1] == pytest.approx(result.accuracy)

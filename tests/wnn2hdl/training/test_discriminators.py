@@ -8,9 +8,9 @@ from wnn2hdl.encode import high_bits, parse_bits
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import evaluate
 from wnn2hdl.evaluation.classifiers import model_classifier
-from wnn2hdl.ir import COLOURS, Thermometer, WisardModel, pixel_encoder
+from wnn2hdl.ir import COLOURS, BitSelect, Thermometer, WisardModel, pixel_encoder
 from wnn2hdl.progress import reported
-from wnn2hdl.training.discriminators import image_histograms, train, with_colours
+from wnn2hdl.training.discriminators import IDENTICAL, image_histograms, train, with_colours
 
 
 def silent(step: str, done: int, total: int) -> None:
@@ -65,6 +65,19 @@ def test_a_model_remembers_the_colours_it_was_shown() -> None:
     assert remembering.colours is not None
     assert np.array_equal(remembering.colours, np.unique(COLOURS.codes(shown)))
     assert remembering.digest() == model.digest()
+    assert remembering.training[IDENTICAL] == []
+
+
+def test_images_that_show_the_same_are_noticed_whatever_their_labels() -> None:
+    one, other = np.random.default_rng(0).integers(0, 256, (2, 9, 3)).astype(np.uint8)
+    shown = {"a": one, "b": other, "c": one}
+
+    def load(name: str) -> LabelledImage:
+        return LabelledImage(name, shown[name], np.arange(9, dtype=np.uint8) % 2 ^ (name == "c"))
+
+    dataset = Dataset(CLASSES, ("a", "b", "c"), load)
+    model = train(dataset, BitSelect(("R7",)), address_bits=1, rams=1, bleaching=1, seed=0, progress=silent)
+    assert with_colours(model, dataset, silent).training[IDENTICAL] == [["a", "c"]]
 
 
 def test_balanced_classes_weigh_alike_so_that_a_rare_one_is_found() -> None:

@@ -15,13 +15,14 @@ from wnn2hdl.build.design import Design
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.build.playback import play
 from wnn2hdl.build.verification import verify_build
-from wnn2hdl.dataset import Dataset, LabelledImage, from_samples
+from wnn2hdl.dataset import CLASSES, Dataset, LabelledImage, from_samples
 from wnn2hdl.emit import write_manifest
 from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.accuracy import evaluate
 from wnn2hdl.evaluation.classifiers import model_classifier
 from wnn2hdl.images import UNLABELLED, Picture, read_rgb
 from wnn2hdl.ir import BitSelect, Neighbourhood, Tap, WisardModel, pixel_encoder
+from wnn2hdl.training.budget import LIGHT
 from wnn2hdl.training.neighbourhood import _draw, train_neighbourhood
 
 
@@ -61,7 +62,21 @@ def test_a_trained_neighbourhood_classifies_other_landscapes() -> None:
     result = evaluate(model_classifier(model), from_samples(3, 96, seed=50), silent)
     assert result.accuracy > 0.85
     assert model.training["luts"] == 13
+    promised = model.training[LIGHT]["1"]
+    assert 0.6 < promised["worst_image"] < promised["accuracy"] < 1
     assert model.training["images"] == [f"landscape-{seed:05d}" for seed in range(1, 5)]
+
+
+def test_nothing_is_promised_by_one_image_or_if_one_fold_alone_shows_a_class() -> None:
+    pixels = np.random.default_rng(0).integers(0, 256, (100, 3)).astype(np.uint8)
+
+    def of_class(name: str) -> LabelledImage:
+        return LabelledImage(name, pixels, np.full(100, name == "b", np.uint8), (10, 10))
+
+    mixed = LabelledImage("c", pixels, np.arange(100, dtype=np.uint8) % 2, (10, 10))
+    for dataset in (Dataset(CLASSES, ("a", "b"), of_class), Dataset(CLASSES, ("c",), lambda name: mixed)):
+        model = train_neighbourhood(dataset, 3, luts_per_pixel=None, seed=0, progress=silent)
+        assert LIGHT not in model.training
 
 
 def test_what_no_neighbourhood_can_be_trained_on_is_refused() -> None:
