@@ -59,7 +59,7 @@ def across(
         moves: whether what leaves can be taken; if not, all of it stands still.
     """
     pixels, width = len(words), len(words[0])
-    waits = -(-reach // pixels)
+    waiting = waits(reach, pixels)
 
     def register(what: str, bits: int = 1, *, reset_less: bool = True) -> Signal:
         return Signal(bits, name=f"{name}{what}", reset_less=reset_less)
@@ -76,7 +76,7 @@ def across(
         )
 
     # The newest beat first; the last one of them is the next in the middle.
-    queue = [beat("newest"), *(beat(f"waiting_{place}") for place in range(1, waits))]
+    queue = [beat("newest"), *(beat(f"waiting_{place}") for place in range(1, waiting))]
     newest, oldest, middle = queue[0], queue[-1], beat("middle")
     # Behind the end of a line nothing that comes could be overtaken.
     shifts = Signal(name=f"{name}shifts")
@@ -123,6 +123,11 @@ def across(
     around = [*reversed(left), *middle.words, *right]
     windows = [around[pixel : pixel + 2 * reach + 1] for pixel in range(pixels)]
     return Windows(middle.valid, middle.start, middle.last, middle.final, windows, list(middle.sent))
+
+
+def waits(reach: int, pixels: int) -> int:
+    """For how many beats of so many pixels a beat waits whose windows reach so far to the right."""
+    return -(-reach // pixels)
 
 
 @dataclass(frozen=True)

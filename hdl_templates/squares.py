@@ -17,7 +17,7 @@ from amaranth.lib.memory import Memory
 from hdl_templates.scan import Pixels
 from hdl_templates.stream import Head, queued
 
-_LATENCY = 3
+LATENCY = 3
 """Cycles from a beat to the majority of the square that it completes."""
 
 
@@ -32,6 +32,21 @@ class Squares:
 
     side: int
     classes: int
+
+    @property
+    def vote_bits(self) -> int:
+        """Bits of a counter, which has a sign."""
+        return (self.side**2).bit_length() + 1
+
+    def memory(self, places: int, pixels: int) -> tuple[int, int]:
+        """Words of the memory, a power of two, and bits of a word.
+
+        Args:
+            places: beats of the longest line.
+            pixels: of a beat.
+        """
+        squares = -(-places // (self.side // pixels))
+        return 1 << (max(squares, 2) - 1).bit_length(), self.vote_bits * (self.classes - 1)
 
 
 def majorities(
@@ -84,21 +99,21 @@ def majorities(
             beat.last,
         ),
     )
-    totals = _totals(m, squares, beat.values, place_at, places=1 << len(place), flags=flags)
+    totals = _totals(m, squares, beat.values, place_at, places=places, flags=flags)
     return queued(
         m,
         "squares",
         valid=beat.valid & room & closes & lowest,
         ready=ready,
         word=Cat(flags[-1][4:6], _winner(m, totals)),
-        latency=_LATENCY,
+        latency=LATENCY,
         taken=taken,
     )
 
 
 def _later(m: Module, flags: Value) -> list[Signal]:
     """The flags of a beat after each of the cycles."""
-    later = [Signal(len(flags), name=f"squares_flags_{cycle}") for cycle in range(1, _LATENCY + 1)]
+    later = [Signal(len(flags), name=f"squares_flags_{cycle}") for cycle in range(1, LATENCY + 1)]
     m.d.sync += [after.eq(before) for after, before in zip(later, [flags, *later], strict=False)]
     return later
 
@@ -119,14 +134,13 @@ def _totals(
         squares: how they are made.
         values: the classes of the beat's pixels.
         place: of the beat's square in its row.
-        places: squares of a row, a power of two.
+        places: beats of the longest line.
         flags: after each cycle whether the beat passes, is the last of its line in a square, is the first
             one, and is in the first line of the square.
     """
-    votes = signed((squares.side**2).bit_length() + 1)
-    memory = Memory(
-        shape=votes.width * (squares.classes - 1), depth=places, init=[], attrs={"ram_style": "block"}
-    )
+    votes = signed(squares.vote_bits)
+    words, bits = squares.memory(places, len(values))
+    memory = Memory(shape=bits, depth=words, init=[], attrs={"ram_style": "block"})
     m.submodules.squares_memory = memory
     write, read = memory.write_port(), memory.read_port()
     # The memory is read while the beat is counted. A line has a square again three cycles later at the

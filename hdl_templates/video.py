@@ -68,6 +68,23 @@ class Neighbours:
         return [max(1, *(line for seen, line in self.seen if seen == bit)) for bit in range(bits)]
 
 
+@dataclass(frozen=True)
+class EdgeLines:
+    """What is kept of the lines above, for windows of edges.
+
+    Attributes:
+        depth: bits of a value that windows see, its highest ones; 0 where there are no windows.
+        sends: bits that are sent of it, its lowest ones.
+        kept: for each of its bits how many lines above the newest one are kept.
+        is_reduced: whether windows see only whether a value is not 0, in one more bit of it.
+    """
+
+    depth: int
+    sends: int
+    kept: list[int]
+    is_reduced: bool
+
+
 class VideoCore(Part):
     """A video core.
 
@@ -140,6 +157,20 @@ class VideoCore(Part):
         return 1 << (self.video.beats_of(self.video.max_width) - 1).bit_length()
 
     @property
+    def marks_lines(self) -> bool:
+        """Whether classes pass another scan: for edges, or to know the last line of a frame."""
+        return bool(self.windows) or (self.squares is not None and self.neighbours is None)
+
+    def edge_lines(self, bits: int) -> EdgeLines:
+        """What that scan keeps of values of so many bits."""
+        depth = len(input_of(self.windows[0])) // WINDOW_BITS if self.windows else 0
+        sends = 0 if self.video.answer == "edge" and not self.squares else bits
+        # What is sent is kept of the line in the middle, what windows see of two lines.
+        if depth in (0, bits):
+            return EdgeLines(depth, sends, [2 if depth else 1] * bits, is_reduced=False)
+        return EdgeLines(depth, sends, [1] * sends + [2], is_reduced=True)
+
+    @property
     def summary(self) -> str:
         """See `Part.summary`."""
         what = {"class": "classes", "edge": "edges", "both": "classes and edges"}[self.video.answer]
@@ -174,14 +205,14 @@ class VideoCore(Part):
             "pixels",
             valid=self.s_axis_video_tvalid,
             ready=self.s_axis_video_tready,
-            word=Cat(*_delayed(m, "pixels", latency, start, last), *map(_output, self.pixels)),
+            word=Cat(*_delayed(m, "pixels", latency, start, last), *map(output_of, self.pixels)),
             latency=latency,
             taken=taken,
         )
         pixels = Pixels(head.valid, head.word[0], head.word[1], None, _split(head.word[2:], self.pixels))
         if self.neighbours is not None:
             pixels, taken = self._look_around(m, pixels, taken, self.neighbours, reset, platform)
-        if self.windows or (self.squares and pixels.final is None):
+        if self.marks_lines:
             self._find_edges(m, pixels, taken, reset, platform)
         else:
             room = self._vote(m, pixels, self.m_axis_video_tready)
@@ -219,7 +250,7 @@ class VideoCore(Part):
             )
             (part,) = neighbours.parts
             place(m, "decision", part, platform)
-            m.d.comb += _input(part).eq(Cat(counted.own, *counted.counts))
+            m.d.comb += input_of(part).eq(Cat(counted.own, *counted.counts))
             return self._classes(m, counted, neighbours.parts, moves)
         m.d.comb += advances.eq(moves)
         seen = neighbours.seen
@@ -230,7 +261,7 @@ class VideoCore(Part):
             code = [
                 window[column][seen.index((bit, 2 * reach - row))] for bit, row, column in neighbours.taps
             ]
-            m.d.comb += _input(part).eq(Cat(*code))
+            m.d.comb += input_of(part).eq(Cat(*code))
         return self._classes(m, found, neighbours.parts, moves)
 
     def _classes(
@@ -245,7 +276,7 @@ class VideoCore(Part):
             "classes",
             valid=found.valid,
             ready=moves,
-            word=Cat(*marks, *map(_output, parts)),
+            word=Cat(*marks, *map(output_of, parts)),
             latency=latency,
             taken=leaves,
         )
@@ -276,24 +307,18 @@ class VideoCore(Part):
 
     def _find_edges(self, m: Module, pixels: Pixels, taken: Signal, reset: Value, platform: object) -> None:
         """The edges between pixels, if there are any, and the answers; frames whose last line is marked."""
-        bits = len(pixels.values[0])
-        depth = len(_input(self.windows[0])) // WINDOW_BITS if self.windows else 0
-        # What is sent is kept of the line in the middle, what windows see of two lines.
-        sends, looks = 0 if self.video.answer == "edge" and not self.squares else bits, bits
-        if not depth:
-            values, kept = pixels.values, [1] * bits
-        elif depth == bits:
-            values, kept = pixels.values, [2] * bits
-        else:
-            values, kept = [Cat(value[:sends], value.any()) for value in pixels.values], [1] * sends + [2]
-            looks = len(kept)
+        lines = self.edge_lines(len(pixels.values[0]))
+        depth, sends, looks = lines.depth, lines.sends, len(lines.kept)
+        values = pixels.values
+        if lines.is_reduced:
+            values = [Cat(value[:sends], value.any()) for value in values]
         moves, room = Signal(name="moves"), Signal(name="answers_ready")
         columns = scan(
             m,
             "",
             replace(pixels, values=values),
             reach=1,
-            kept=kept,
+            kept=lines.kept,
             places=self.places,
             height=self.height if pixels.final is None else None,
             reset=reset,
@@ -309,7 +334,7 @@ class VideoCore(Part):
         for number, part in enumerate(self.windows):
             place(m, f"window_{number}", part, platform)
             rows = [column.word_select(row, depth) for row in range(SIDE) for column in beat.words[number]]
-            m.d.comb += _input(part).eq(Cat(*rows))
+            m.d.comb += input_of(part).eq(Cat(*rows))
         passing = Pixels(beat.valid, beat.start, beat.last, beat.final, beat.sent)
         counted = self._vote(m, passing, room)
         m.d.comb += moves.eq(room & counted)
@@ -320,7 +345,7 @@ class VideoCore(Part):
             "answers",
             valid=beat.valid & counted,
             ready=room,
-            word=Cat(*delayed, *map(_output, self.windows)),
+            word=Cat(*delayed, *map(output_of, self.windows)),
             latency=latency,
             taken=self.m_axis_video_tready,
         )
@@ -371,16 +396,16 @@ def _stream(name: str, width: int, forward: Any, back: Any) -> dict[str, Any]:
 
 def _split(words: Value, parts: Sequence[Part]) -> list[Value]:
     """The words side by side that came out of circuits."""
-    return [words.word_select(number, len(_output(part))) for number, part in enumerate(parts)]
+    return [words.word_select(number, len(output_of(part))) for number, part in enumerate(parts)]
 
 
-def _input(part: Part) -> Value:
-    """The one input of a circuit."""
+def input_of(part: Part) -> Value:
+    """The one input of a circuit of a core."""
     return _member(part, In)
 
 
-def _output(part: Part) -> Value:
-    """The one output of a circuit."""
+def output_of(part: Part) -> Value:
+    """The one output of a circuit of a core."""
     return _member(part, Out)
 
 

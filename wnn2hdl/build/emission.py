@@ -9,6 +9,7 @@ from amaranth.lib.wiring import In, Out
 
 from hdl_templates import sobel
 from hdl_templates.hierarchy import Part
+from hdl_templates.outline import steps_of
 from hdl_templates.sobel_video import SobelCore
 from hdl_templates.video import VideoCore
 from wnn2hdl import elaborate
@@ -29,6 +30,7 @@ from wnn2hdl.emit import (
 )
 from wnn2hdl.errors import InputError
 from wnn2hdl.files import write_text
+from wnn2hdl.ir.steps import Step
 from wnn2hdl.minimise.portfolio import generators as minimisers
 from wnn2hdl.synth import Ports
 from wnn2hdl.tools import find_yosys
@@ -112,6 +114,11 @@ def video_part(design: Design) -> VideoCore:
     return elaborate.video_core(
         design.top, design.video, design.surroundings, classes=classes, style=design.style
     )
+
+
+def steps(design: Design) -> tuple[Step, ...]:
+    """What a core is made of between its streams; nothing of designs without streams."""
+    return steps_of(top_part(design)) if design.has_memories else ()
 
 
 def baseline_module(design: Design) -> str:

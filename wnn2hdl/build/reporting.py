@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.build.classifier import circuit_classifier
 from wnn2hdl.build.design import MODEL_FILE, Design
+from wnn2hdl.build.emission import steps
 from wnn2hdl.build.folder import REPORT_FILE, REPORT_HTML, SAMPLE_FILE, failure, require_build
 from wnn2hdl.build.planning import CompileOptions
 from wnn2hdl.dataset import Dataset
@@ -62,12 +63,13 @@ def page(design: Design, report: Mapping[str, Any], sample: NDArray[np.uint8]) -
         sample: a picture to show through the circuit, uint8 ``[height, width, 3]``.
     """
     if not (design.target.classifies or design.target.has_edges):
-        return build_page(report, design.networks)
+        return build_page(report, design.networks, steps=steps(design))
     model = design.picture_model
     palette = Palette.of(model.classes)
     window = model.encoder if isinstance(model.encoder, Neighbourhood) else None
     legend = tuple(palette.to_json().items())
-    return build_page(report, design.networks, _pictures(design, sample, palette), legend, window)
+    pictures = _pictures(design, sample, palette)
+    return build_page(report, design.networks, pictures, legend, window, steps(design))
 
 
 def write_page(folder: Path) -> Path:

@@ -11,9 +11,11 @@ from markupsafe import Markup
 
 from wnn2hdl.ir import Lut, LutNetwork, Mux, Neighbourhood
 from wnn2hdl.ir.model import COMMAND
+from wnn2hdl.ir.steps import Step
 from wnn2hdl.lower.targets import TARGETS
 from wnn2hdl.report.charts import cube_bars, for_all_widths, light_lines, lut_bars, published
 from wnn2hdl.report.logic import Grid, contents, expression, grid
+from wnn2hdl.report.pipeline import lay_out, memory, waiting, way
 from wnn2hdl.report.placed import NOTE as PLACED_NOTE
 from wnn2hdl.report.placed import PLACED_HEADS, placed_notes, placed_rows, vivado_rows
 from wnn2hdl.report.schematic import draw
@@ -88,6 +90,7 @@ def build_page(
     pictures: Sequence[Picture] = (),
     legend: Sequence[tuple[str, str]] = (),
     window: Neighbourhood | None = None,
+    steps: Sequence[Step] = (),
 ) -> str:
     """The page of a build; the same arguments give the same bytes.
 
@@ -100,6 +103,7 @@ def build_page(
         pictures: sample pictures.
         legend: class names and their colours in the pictures, as CSS writes colours.
         window: what a classifier of neighbourhoods looks at.
+        steps: of a core, from stream to stream.
     """
     templates = environment()
     templates.globals["figure"] = figures_of(report)
@@ -118,6 +122,13 @@ def build_page(
         model=model if target is None or target.classifies or "network" in report["parts"] else None,
         answers=target is None or target.classifies or target.has_edges or report["accuracy"] is not None,
         window=_window(window) if window else (),
+        steps=[(step, memory(step), waiting(step)) for step in steps],
+        delay={key: sum(getattr(step, key) for step in way(steps)) for key in ("lines", "beats", "cycles")}
+        if steps
+        else {},
+        pipelines=[
+            (lay_out(steps, report["parts"], narrow=narrow), narrow) for narrow in (False, True) if steps
+        ],
         places={
             name: f"row {tap.row}, column {tap.column}"
             for name, tap in zip(window.names, window.taps, strict=True)
