@@ -11,7 +11,14 @@ from wnn2hdl.cli.finite import SpanType
 from wnn2hdl.cli.output import printed
 from wnn2hdl.dataset import Dataset
 from wnn2hdl.evaluation.classifiers import PixelTable
-from wnn2hdl.evaluation.light import BRIGHTER, brighter_figures, brighter_warning, light_curve, steps
+from wnn2hdl.evaluation.light import (
+    BRIGHTER,
+    CHANGES,
+    brighter_figures,
+    brighter_warning,
+    light_curve,
+    steps,
+)
 from wnn2hdl.progress import Progress
 
 Command = Callable[..., None]
@@ -19,7 +26,7 @@ Command = Callable[..., None]
 Light = Mapping[str, tuple[float, ...]]
 """What is varied, of `wnn2hdl.evaluation.light.CHANGES`, and its values."""
 
-LIGHT = ("--exposure", "--haze")
+LIGHT = ("--exposure", "--haze", "--white-balance", "--gamma")
 """For the sections of a command's help."""
 
 HAZE_ALONE = "0..0.1"
@@ -37,18 +44,28 @@ haze_option = click.option(
     flag_value=HAZE_ALONE,
     help=f"Also measure through white haze.  [default: {HAZE_ALONE}]",
 )
+white_balance_option = click.option(
+    "--white-balance",
+    type=SpanType("0.9..1.1", 0.5, 2),
+    help="Also measure with red times these factors, and blue divided by them.",
+)
+gamma_option = click.option(
+    "--gamma",
+    type=SpanType("0.8..1.25", 0.2, 5),
+    help="Also measure with levels raised to these powers.",
+)
 
 
 def light_options(command: Command) -> Command:
     """Give a command the options of `LIGHT`, which it gets as ``light``."""
 
     @wraps(command)
-    def reads(*, exposure: tuple[float, float] | None, haze: tuple[float, float] | None, **rest: Any) -> None:
-        spans = {"exposure": exposure, "haze": haze}
+    def reads(**options: Any) -> None:
+        spans: dict[str, tuple[float, float] | None] = {name: options.pop(name) for name in CHANGES}
         light = {name: steps(*span, name) for name, span in spans.items() if span is not None}
-        command(light=light, **rest)
+        command(light=light, **options)
 
-    return exposure_option(haze_option(reads))
+    return exposure_option(haze_option(white_balance_option(gamma_option(reads))))
 
 
 def in_light(
@@ -76,7 +93,7 @@ def in_light(
 
 def light_lines(figures: Mapping[str, Any]) -> list[str]:
     """What `in_light` found, for people: a table for each quantity, and the warning if there is one."""
-    lines = [_table(quantity, points) for quantity, points in figures["light"].items()]
+    lines = [_table(quantity.replace("_", " "), points) for quantity, points in figures["light"].items()]
     warning = brighter_warning(figures["brighter"])
     return [*lines, warning] if warning else lines
 

@@ -1,4 +1,4 @@
-"""How often a classifier of pictures is right in more light and in less, and through haze."""
+"""How often a classifier of pictures is right in other light and air, and by other cameras."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.evaluation.accuracy import labelled_answers, require_same_classes
 from wnn2hdl.evaluation.classifiers import PictureClassifier
 from wnn2hdl.evaluation.measures import accuracy, confusion_of, interval
-from wnn2hdl.images import exposed, hazed
+from wnn2hdl.images import balanced, curved, exposed, hazed
 from wnn2hdl.ir import BitSelect, Comparison, Context, Neighbourhood, PictureEncoder
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS, CHANNELS, PIXEL_BIT_NAMES
 from wnn2hdl.progress import Progress, reported
@@ -19,10 +19,12 @@ from wnn2hdl.progress import Progress, reported
 CHANGES: Mapping[str, Callable[[NDArray[np.uint8], float], NDArray[np.uint8]]] = {
     "exposure": exposed,
     "haze": hazed,
+    "white_balance": balanced,
+    "gamma": curved,
 }
-"""What light does to pixels, by the name of the quantity that it takes."""
+"""What light, air and camera do to pixels, by the name of the quantity that it takes."""
 
-AS_TAKEN: Mapping[str, float] = {"exposure": 1.0, "haze": 0.0}
+AS_TAKEN: Mapping[str, float] = {"exposure": 1.0, "haze": 0.0, "white_balance": 1.0, "gamma": 1.0}
 """The value of each quantity that leaves pixels as they are."""
 
 BRIGHTER = (1.0, 1.1, 1.2, 1.3, 1.4, 1.5)

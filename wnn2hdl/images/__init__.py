@@ -3,7 +3,7 @@
 from wnn2hdl.images.codes import parse_code, spoken_codes
 from wnn2hdl.images.folders import by_stem, list_images, pair_masks
 from wnn2hdl.images.labels import UNLABELLED, Labels, MaskFormat, read_labels
-from wnn2hdl.images.light import exposed, hazed
+from wnn2hdl.images.light import balanced, curved, exposed, hazed
 from wnn2hdl.images.palette import CLASS_COLOURS, Palette
 from wnn2hdl.images.reading import Picture, picture_size, read_picture, read_rgb, whole_windows
 from wnn2hdl.images.sources import PlainPicture, Source, open_picture
@@ -18,7 +18,9 @@ __all__ = [
     "Picture",
     "PlainPicture",
     "Source",
+    "balanced",
     "by_stem",
+    "curved",
     "exposed",
     "hazed",
     "jpeg_bytes",

@@ -1,4 +1,4 @@
-"""Pictures under more or less light, and through haze."""
+"""Pictures under more or less light, through haze, and by cameras of other white balance and gamma."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,31 @@ def hazed(pixels: NDArray[np.uint8], share: float) -> NDArray[np.uint8]:
         share: 0 for clear air, to 1.
     """
     return _mapped(pixels, (1 - share) * np.arange(256) + share * AIRLIGHT)
+
+
+def balanced(pixels: NDArray[np.uint8], gain: float) -> NDArray[np.uint8]:
+    """Pixels of a camera of another white balance: red times ``gain``, blue divided by it.
+
+    Levels are rounded, halves upwards, and stop at 255.
+
+    Args:
+        pixels: uint8 of any shape whose last axis is red, green, blue.
+        gain: above 0; warmer above 1.
+    """
+    warm = pixels.copy()
+    for channel, factor in (0, gain), (2, 1 / gain):
+        warm[..., channel] = exposed(pixels[..., channel], factor)
+    return warm
+
+
+def curved(pixels: NDArray[np.uint8], gamma: float) -> NDArray[np.uint8]:
+    """Pixels whose levels, as shares of 255, are raised to the power ``gamma``; halves are rounded upwards.
+
+    Args:
+        pixels: uint8 of any shape.
+        gamma: above 0; darker above 1.
+    """
+    return _mapped(pixels, 255 * (np.arange(256) / 255) ** gamma)
 
 
 def _mapped(pixels: NDArray[np.uint8], levels: NDArray[np.floating]) -> NDArray[np.uint8]:

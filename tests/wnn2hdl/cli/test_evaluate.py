@@ -86,13 +86,18 @@ def test_a_model_is_measured(evaluate: Run, model: Path, folders: tuple[Path, Pa
 def test_a_model_is_measured_in_changed_light(
     evaluate: Run, run: Run, model: Path, folders: tuple[Path, Path]
 ) -> None:
-    words = (model, "--images", folders[0], "--masks", folders[1], "--exposure", "0.5..1.5", "--haze")
+    words = (
+        model, "--images", folders[0], "--masks", folders[1], "--exposure", "0.5..1.5", "--haze",
+        "--white-balance", "0.9..1.1", "--gamma", "0.8..1",
+    )  # fmt: skip
     data = evaluate(*words)["model"]
     exposures, hazes = data["light"]["exposure"], data["light"]["haze"]
     assert [point["value"] for point in exposures] == [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5]
     assert hazes[-1]["value"] == 0.1
-    # Neither full light nor clear air changes anything.
-    for point in exposures[5], hazes[0]:
+    balances, gammas = data["light"]["white_balance"], data["light"]["gamma"]
+    # Full light, clear air and the camera's own balance and gamma change nothing.
+    middle = next(point for point in balances if point["value"] == 1)
+    for point in exposures[5], hazes[0], middle, gammas[-1]:
         assert point["accuracy"] == data["accuracy"]
         assert point["interval"] == data["intervals"]["accuracy"]
         assert point["worst_image"] == data["worst_image"]
@@ -102,6 +107,7 @@ def test_a_model_is_measured_in_changed_light(
     text = run("evaluate", *words).stdout
     assert "│ 0.5      │" in text
     assert "lowest accuracy" in text
+    assert ", at white balance " in text
 
 
 def test_a_model_that_leaves_the_high_bits_out_is_warned_of(
