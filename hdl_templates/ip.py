@@ -123,30 +123,30 @@ class EngineIp(Part):
         """The engine, its registers, and what watches its matches."""
         m = Module()
         core, control = self.core, AxiLiteRegisters(registers=self.registers)
-        matches = MatchControl(engine=core.engine)
-        _place(m, self, platform, control, core, matches)
+        watch = MatchControl(engine=core.engine)
+        _place(m, self, platform, control, core, watch)
         pass_on(m, self, core, ports_of(core, "s_axis_segment"))
         pass_on(m, self, core, (f"s_axis_template_{name}" for name in ("tdata", "tuser", "tlast")))
         m.d.comb += [
-            core.s_axis_template_tvalid.eq(self.s_axis_template_tvalid & matches.passes),
-            self.s_axis_template_tready.eq(core.s_axis_template_tready & matches.passes),
-            matches.template_tvalid.eq(self.s_axis_template_tvalid),
-            matches.template_tready.eq(core.s_axis_template_tready),
-            matches.template_tuser.eq(self.s_axis_template_tuser),
-            matches.template_tlast.eq(self.s_axis_template_tlast),
-            matches.segment_tvalid.eq(self.s_axis_segment_tvalid),
-            matches.segment_tready.eq(core.s_axis_segment_tready),
-            matches.segment_tlast.eq(self.s_axis_segment_tlast),
-            matches.result_tvalid.eq(core.m_axis_result_tvalid),
-            core.m_axis_result_tready.eq(matches.result_tready),
-            matches.enable.eq(control.control_enable),
-            matches.waits.eq(control.interrupt_match_waits),
-            control.status_running.eq(matches.running),
-            control.status_segment.eq(matches.has_segment),
-            control.interrupt_match.eq(matches.ended),
-            control.interrupt_malformed.eq(matches.gone_wrong),
-            control.matches.eq(matches.matches),
-            control.malformed.eq(matches.malformed),
+            core.s_axis_template_tvalid.eq(self.s_axis_template_tvalid & watch.passes),
+            self.s_axis_template_tready.eq(core.s_axis_template_tready & watch.passes),
+            watch.template_tvalid.eq(self.s_axis_template_tvalid),
+            watch.template_tready.eq(core.s_axis_template_tready),
+            watch.template_tuser.eq(self.s_axis_template_tuser),
+            watch.template_tlast.eq(self.s_axis_template_tlast),
+            watch.segment_tvalid.eq(self.s_axis_segment_tvalid),
+            watch.segment_tready.eq(core.s_axis_segment_tready),
+            watch.segment_tlast.eq(self.s_axis_segment_tlast),
+            watch.result_tvalid.eq(core.m_axis_result_tvalid),
+            core.m_axis_result_tready.eq(watch.result_tready),
+            watch.enable.eq(control.control_enable),
+            watch.waits.eq(control.interrupt_match_waits),
+            control.status_running.eq(watch.running),
+            control.status_segment.eq(watch.has_segment),
+            control.interrupt_match.eq(watch.ended),
+            control.interrupt_malformed.eq(watch.gone_wrong),
+            control.results.eq(watch.results),
+            control.malformed.eq(watch.malformed),
         ]
         for position, name in enumerate(RESULT):
             register = self.registers.register(name)

@@ -30,7 +30,7 @@ class MatchControl(Part):
         has_segment: Out, whether a segment has come.
         ended: Out, for a cycle, that a match has ended.
         gone_wrong: Out, for a cycle, that a template or a segment turned out to be of another size.
-        matches, malformed: Out, how many of these there were.
+        results, malformed: Out, how many of these there were.
     """
 
     clocked = True
@@ -54,7 +54,7 @@ class MatchControl(Part):
                 "has_segment": Out(1),
                 "ended": Out(1),
                 "gone_wrong": Out(1),
-                "matches": Out(DATA_BITS),
+                "results": Out(DATA_BITS),
                 "malformed": Out(COUNT_BITS),
             }
         )
@@ -83,7 +83,7 @@ class MatchControl(Part):
         m.d.sync += left.eq(left + came.whole - self.ended)
         with m.If(whole):
             m.d.sync += self.has_segment.eq(1)
-        counted(m, self.matches, self.ended)
+        counted(m, self.results, self.ended)
         counted(m, self.malformed, self.gone_wrong)
         m.d.comb += [
             self.ended.eq(self.result_tvalid & ~shown),

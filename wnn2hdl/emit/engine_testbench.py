@@ -180,7 +180,7 @@ module {name}_tb;
                 received = received + 1;
             end
         end
-        read({at["matches"]}, 32'd{count}, 2'd0);
+        read({at["results"]}, 32'd{count}, 2'd0);
         read({at["malformed"]}, 32'd0, 2'd0);
         if (wrong) begin
             $display("FAIL: {name}, match %0d of {count}", received);

@@ -153,7 +153,7 @@ def engine_registers(engine: EngineFormat, digest: str) -> RegisterMap:
     own = (
         _pair("template", "constant", "{} of a template", engine.template),
         _pair("segment", "constant", "{} of a segment", engine.segment),
-        _word("matches", "status", "Matches that have ended since a reset, modulo 2^32"),
+        _word("results", "status", "Matches that have ended since a reset, modulo 2^32"),
         _word(
             "malformed",
             "status",

@@ -1,8 +1,11 @@
 """Registers: no two in one place, no two of one name, and each with its meaning."""
 
+import keyword
+
 import pytest
 
 from wnn2hdl.ir.engine import RESULT_WORDS, EngineFormat
+from wnn2hdl.ir.identifiers import RESERVED
 from wnn2hdl.ir.registers import (
     DATA_BITS,
     RESULT,
@@ -30,6 +33,8 @@ def test_registers_follow_each_other_and_fields_do_not_overlap(registers: Regist
             taken |= field.mask
     names = [register.signal(field) for register, field in registers]
     assert len(set(names)) == len(names)
+    assert not RESERVED & set(names)
+    assert not any(map(keyword.iskeyword, names))
 
 
 @pytest.mark.parametrize("registers", [VIDEO, ENGINE])
