@@ -4,7 +4,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from wnn2hdl.emit.register_bench import bus_ports, bus_signals, bus_tasks, identified, offset
+from wnn2hdl.emit.register_bench import (
+    CLOCKED,
+    SAMPLED,
+    bus_ports,
+    bus_signals,
+    bus_tasks,
+    filled,
+    identified,
+    read,
+    write,
+)
 from wnn2hdl.ir.engine import RESULT_WORDS, EngineFormat, Round, picture_words
 from wnn2hdl.ir.registers import RESULT, RegisterMap
 
@@ -61,7 +71,15 @@ def engine_testbench(
         for signal in signals
     )
     ports += ",\n" + ",\n".join(bus_ports())
-    at = {register.name: offset(registers, register.name) for register in registers.registers}
+    before = [
+        *identified(registers),
+        write(registers, "interrupt_enable", 1),
+        write(registers, "control", 1),
+    ]
+    # The values of results come from the file.
+    result = [*(read(registers, name, 0) for name in RESULT), write(registers, "interrupt", 1)]
+    after = [read(registers, "results", count), read(registers, "malformed", 0)]
+    script = [*before, *result, *after]
     return f"""\
 // Checks {name} in {count} matches; run it in this folder,
 // with Icarus:    iverilog -o {name}_tb {files} && vvp -N {name}_tb
@@ -77,12 +95,12 @@ module {name}_tb;
     reg t_tvalid = 1'b0;
     reg waits, taken, put, wrong;
     integer match, segment, word, pixel, received, settled, now, ended, i;
-    reg [31:0] s_tdata, packed_pixels, expected;
+    reg [31:0] s_tdata, packed_pixels;
     reg [7:0] t_tdata;
     reg s_tlast, t_tuser, t_tlast;
     reg timed = 1'b0;
     wire s_tready, t_tready;
-{bus_signals()}
+{bus_signals(len(script))}
     {name} dut (
         .aclk(aclk),
         .aresetn(aresetn),
@@ -121,9 +139,9 @@ module {name}_tb;
                 wrong = wrong || now - ended != {cycles + 1};
                 timed = 1'b0;
             end
-            #1 aclk = 1'b1;
+{SAMPLED}            #1 aclk = 1'b1;
             #1 aclk = 1'b0;
-            if (taken) begin
+{CLOCKED}            if (taken) begin
                 word = word + 1;
                 s_tvalid = 1'b0;
             end
@@ -150,7 +168,7 @@ module {name}_tb;
 
     initial begin
         $readmemh("{vectors_file}", vectors);
-        match = 0;
+{filled(script)}        match = 0;
         segment = 0;
         word = 0;
         pixel = 0;
@@ -164,24 +182,27 @@ module {name}_tb;
             #1 aclk = 1'b0;
         end
         aresetn = 1'b1;
-        // No template begins before it is enabled.
-{identified(registers)}        write({at["interrupt_enable"]}, 32'd1, 2'd0);
-        if (pixel != 0) refuse;
-        write({at["control"]}, 32'd1, 2'd0);
+        for (access = 0; access < {len(before)}; access = access + 1) begin
+            // No template begins before it is enabled.
+            if (access == {len(before) - 1} && pixel != 0) refuse;
+            {{writes, answer, address, value}} = script[access];
+            use_register;
+        end
         while (received < {count} && !wrong && !denied) begin
             step;
             if (irq) begin
-                for (i = 0; i < {RESULT_WORDS}; i = i + 1) begin
-                    expected = vectors[{results_at} + {RESULT_WORDS} * received + i];
-                    read({at[RESULT[0]]} + 4 * i, expected, 2'd0);
+                for (i = 0; i < {len(result)}; i = i + 1) begin
+                    {{writes, answer, address, value}} = script[{len(before)} + i];
+                    if (i < {RESULT_WORDS}) value = vectors[{results_at} + {RESULT_WORDS} * received + i];
+                    use_register;
                 end
-                // The result stays until now.
-                write({at["interrupt"]}, 32'd1, 2'd0);
                 received = received + 1;
             end
         end
-        read({at["results"]}, 32'd{count}, 2'd0);
-        read({at["malformed"]}, 32'd0, 2'd0);
+        for (access = {len(before) + len(result)}; access < {len(script)}; access = access + 1) begin
+            {{writes, answer, address, value}} = script[access];
+            use_register;
+        end
         if (wrong) begin
             $display("FAIL: {name}, match %0d of {count}", received);
             $display("  %0d cycles, expected {cycles + 1}", now - ended);

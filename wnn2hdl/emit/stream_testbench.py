@@ -3,7 +3,17 @@
 from collections.abc import Sequence
 from itertools import chain
 
-from wnn2hdl.emit.register_bench import bus_ports, bus_signals, bus_tasks, identified, offset
+from wnn2hdl.emit.register_bench import (
+    CLOCKED,
+    SAMPLED,
+    bus_ports,
+    bus_signals,
+    bus_tasks,
+    filled,
+    identified,
+    read,
+    write,
+)
 from wnn2hdl.ir.registers import RegisterMap
 from wnn2hdl.ir.video import ANSWER_BITS, HEIGHT_BITS, Beats, VideoFormat
 
@@ -82,11 +92,23 @@ def stream_testbench(
     whole = sum(lines == beats.height for lines in beats.lines)
     # The last frame ends without another one, if it is whole.
     cut = sum(lines != beats.height for lines in beats.lines[:-1])
-    at = {register.name: offset(registers, register.name) for register in registers.registers}
+    before = [
+        *identified(registers),
+        write(registers, "height", beats.height % (1 << HEIGHT_BITS)),
+        write(registers, "interrupt_enable", 1),
+        write(registers, "control", 1),
+    ]
+    after = [
+        read(registers, "frames", whole),
+        read(registers, "malformed", cut),
+        read(registers, "width", beats.width),
+        read(registers, "status", 0),
+        write(registers, "interrupt", 1),
+    ]
+    script = [*before, *after]
     pixels, answers = (bits * video.pixels_per_clock for bits in (video.pixel_bits, ANSWER_BITS))
     word = pixels + answers + 2
     bus = ",\n".join(bus_ports())
-    version = sum(field.value << field.low for field in registers.register("version").fields)
     streams = ",\n".join(
         f"        .{side}_axis_video_{signal}({side}_{signal})" for side in "sm" for signal in _SIGNALS
     )
@@ -117,7 +139,7 @@ module {name}_tb;
     wire s_tready;
     wire [{answers - 1}:0] m_tdata;
     wire m_tvalid, m_tuser, m_tlast;
-{declared}{bus_signals()}
+{declared}{bus_signals(len(script))}
     {name} dut (
         .aclk(aclk),
         .aresetn(aresetn),
@@ -150,9 +172,9 @@ module {name}_tb;
                 $stop;
                 $finish;
             end
-{checked}            #1 aclk = 1'b1;
+{checked}{SAMPLED}            #1 aclk = 1'b1;
             #1 aclk = 1'b0;
-            if (taken) begin
+{CLOCKED}            if (taken) begin
                 sent = sent + 1;
                 s_tvalid = 1'b0;
             end
@@ -163,7 +185,7 @@ module {name}_tb;
 
     initial begin
         $readmemh("{vectors_file}", vectors);
-        sent = 0;
+{filled(script)}        sent = 0;
         received = 0;
         idle = 0;
         repeat (4) begin
@@ -171,14 +193,17 @@ module {name}_tb;
             #1 aclk = 1'b0;
         end
         aresetn = 1'b1;
-        // No frame begins before it is enabled.
-{identified(registers)}        write({at["height"]}, 32'd{beats.height % (1 << HEIGHT_BITS)}, 2'd0);
-        write({at["interrupt_enable"]}, 32'd1, 2'd0);
-        if (sent != 0) refuse;
-        write({at["control"]}, 32'd1, 2'd0);
+        for (access = 0; access < {len(before)}; access = access + 1) begin
+            // No frame begins before it is enabled.
+            if (access == {len(before) - 1} && sent != 0) refuse;
+            {{writes, answer, address, value}} = script[access];
+            use_register;
+        end
         while (({waits}) && idle < {_PATIENCE} && !denied) begin
             step;
-            if (random[15:10] == 6'd0) read({at["version"]}, 32'h{version:08x}, 2'd0);
+            // The version, now and then.
+            {{writes, answer, address, value}} = script[0];
+            if (random[15:10] == 6'd0) use_register;
         end
         if (({waits}) && !denied) begin
             $display("FAIL: {name} stopped after %0d of {count} beats", received);
@@ -186,12 +211,11 @@ module {name}_tb;
             $finish;
         end
         repeat (4) step;
-        if (irq !== 1'b1) refuse;
-        read({at["frames"]}, 32'd{whole}, 2'd0);
-        read({at["malformed"]}, 32'd{cut}, 2'd0);
-        read({at["width"]}, 32'd{beats.width}, 2'd0);
-        read({at["status"]}, 32'd0, 2'd0);
-        write({at["interrupt"]}, 32'd1, 2'd0);
+        for (access = {len(before)}; access < {len(script)}; access = access + 1) begin
+            if (irq !== 1'b1) refuse;
+            {{writes, answer, address, value}} = script[access];
+            use_register;
+        end
         if (irq !== 1'b0) refuse;
         if (denied) begin
             $stop;
