@@ -394,3 +394,19 @@ def test_columns_of_the_index_sort_by_mouse_and_keyboard(
     assert (order(), heading.get_attribute("aria-sort")) == ("abcd", "none")
     page.get_by_role("link", name="c", exact=True).click()
     assert page.locator("h1").inner_text() == "c"
+
+
+def test_marks_of_charts_and_plots_tell_their_values_when_pointed_at(
+    open_page: Callable[..., Page], folder: Path, sweep: Path
+) -> None:
+    report = json.loads((folder / "report.json").read_text())
+    page = open_page(folder / "report.html")
+    page.locator("svg.chart:not(.narrow) .mark").first.hover()
+    assert (
+        page.locator(".tip").inner_text() == f"pixel: {report['parts']['pixel']['luts']} LUTs, measured here"
+    )
+    page = open_page(sweep)
+    for mark in page.locator(".plots .mark").all():
+        mark.hover(timeout=5000)
+        assert page.locator(".tip").inner_text() == mark.get_attribute("data-tip")
+    assert "2 address bits, 3 RAMs" in page.locator(".plots").first.inner_html()
