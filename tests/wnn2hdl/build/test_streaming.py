@@ -23,7 +23,7 @@ from wnn2hdl.ir import BitSelect, Context, Neighbourhood, Tap, VideoFormat, Wisa
 from wnn2hdl.ir.registers import video_registers
 from wnn2hdl.ir.video import Answer, Beats
 from wnn2hdl.ir.window import framed_window_codes
-from wnn2hdl.tools import run_icarus
+from wnn2hdl.tools import run_icarus, run_verilator
 from wnn2hdl.verify.stream import run_stream, simulate_stream
 from wnn2hdl.wisard import PixelClassifier
 
@@ -72,6 +72,15 @@ def test_the_testbench_passes_and_finds_a_border_of_zeros(video: Path, tmp_path:
     with pytest.raises(ToolError) as failed:
         run_icarus([files.cells, tmp_path / "wrong.v", files.testbench], top, cwd=tmp_path, timeout=60)
     assert "FAIL" in failed.value.output
+
+
+@pytest.mark.simulator
+@pytest.mark.slow
+def test_the_testbench_passes_in_verilator(video: Path, tmp_path: Path) -> None:
+    _, files, _ = open_build(video)
+    (tmp_path / files.vectors.name).write_text(files.vectors.read_text())
+    sources = [files.cells, files.verilog, files.testbench]
+    assert "PASS" in run_verilator(sources, files.testbench.stem, cwd=tmp_path, timeout=300).output
 
 
 @pytest.mark.simulator
