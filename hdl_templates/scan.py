@@ -57,7 +57,7 @@ class Columns:
         valid: whether there is a slot, of any kind; all else is about a slot.
         whole: whether its lines are all of one frame that is well-formed as yet, so that it can be answered.
         first: whether it is the first of its line.
-        last: whether it is the last of its line.
+        last: whether it is the last of its line, of a slot that is ``whole``; of others it may be anything.
         start: whether it is the first one of a frame that can be answered.
         final: whether the line that is answered is the last one of its frame.
         bits: for each pixel, from left to right, and each bit of its value the bits of the lines, the newest,
@@ -81,7 +81,7 @@ class Slot:
         valid: whether it is used.
         start: whether its beat is the first of a frame.
         last: whether its beat is the last of a line.
-        flush: whether it has no beat, but belongs to a repeated line below the last.
+        flush: whether it is used without a beat: for a repeated line below the last.
         final: whether that is the last one of these.
         first: whether it is the first of its line.
         over: whether the memory has no place for it.
@@ -167,15 +167,16 @@ def _positions(
     # What is open when a frame begins is closed first: a frame by its repeated lines, or by nothing, if it is
     # broken off inside a line; and a line that belongs to no frame.
     halts, waits, takes, step = (signal(what) for what in ("halts", "waits", "takes", "step"))
-    closes, turns = signal("closes"), signal("turns")
+    closes, turns, repeats = signal("closes"), signal("turns"), signal("repeats")
     counted = None if height is None else _last_line(m, name, height, idle, moves & takes & last)
     last_line = pixels.final if counted is None else counted
     assert last_line is not None
     m.d.comb += [
         halts.eq(pixels.valid & start & ~flush & ~(idle & line_starts)),
-        waits.eq(line_starts & young),
+        waits.eq(line_starts & (marked | young)),
         takes.eq(pixels.valid & ~flush & ~halts & ~waits),
-        step.eq(takes | (flush & ~waits)),
+        repeats.eq(flush & ~waits),
+        step.eq(takes | repeats),
         taken.eq(moves & takes),
         closes.eq(takes & last & last_line & (start | ~idle)),
         # As `halts` or `takes` with the last of a line, written out to be two LUTs deep.
@@ -200,7 +201,7 @@ def _positions(
             line_starts.eq(turns | (line_starts & ~step)),
             line_goes_on.eq(Mux(step, line_starts, line_goes_on)),
             marked.eq(marks),
-            young.eq(marks | marked),
+            young.eq(marked),
         ]
     with m.If(moves & step):
         m.d.sync += column.eq(column + 1)
@@ -216,7 +217,7 @@ def _positions(
             slot.valid.eq(step & ~done if reach > 1 else step),
             slot.start.eq(start & ~flush),
             slot.last.eq(last),
-            slot.flush.eq(flush),
+            slot.flush.eq(repeats & ~done if reach > 1 else repeats),
             *([slot.final.eq(final)] if reach > 1 else []),
             slot.first.eq(line_starts),
             slot.over.eq(column[-1]),
@@ -239,11 +240,17 @@ def _last_line(m: Module, name: str, height: Value, idle: Value, ends: Value) ->
         idle: whether no frame is open.
         ends: whether a line ends.
     """
-    last_line = Signal(name=f"{name}last_line", reset_less=True)
+    last_line = Signal(name=f"{name}last_line")
     held = Signal(HEIGHT_BITS, name=f"{name}held_height", reset_less=True)
     line = Signal(HEIGHT_BITS, name=f"{name}line", init=1, reset_less=True)
     line_ended = Signal(name=f"{name}line_ended", reset_less=True)
-    m.d.sync += [line_ended.eq(ends), last_line.eq(line == held)]
+    # In LUTs of six inputs, three places each: in one word Yosys takes two LUTs more.
+    same = Signal(HEIGHT_BITS // 3, name=f"{name}same_lines", reset_less=True)
+    m.d.comb += last_line.eq(same.all())
+    m.d.sync += [
+        line_ended.eq(ends),
+        same.eq(Cat(line.word_select(i, 3) == held.word_select(i, 3) for i in range(len(same)))),
+    ]
     with m.If(line_ended):
         m.d.sync += line.eq(line + 1)
     with m.If(idle):
@@ -257,7 +264,7 @@ def _slot(name: str, place_bits: int, value_bits: int, reach: int) -> Slot:
     def register(what: str, bits: int = 1, *, reset_less: bool = True) -> Signal:
         return Signal(bits, name=f"{name}_{what}", reset_less=reset_less)
 
-    flush = register("flush")
+    flush = register("flush", reset_less=False)
     return Slot(
         valid=register("valid", reset_less=False),
         start=register("start"),
@@ -277,7 +284,7 @@ def _later(m: Module, name: str, early: Slot, reach: int, moves: Value, done: Va
     with m.If(moves):
         m.d.sync += [getattr(late, field.name).eq(getattr(early, field.name)) for field in fields(Slot)]
         if reach > 1:
-            m.d.sync += late.valid.eq(early.valid & ~done)
+            m.d.sync += [late.valid.eq(early.valid & ~done), late.flush.eq(early.flush & ~done)]
     return late
 
 
@@ -296,9 +303,9 @@ def _lines(
     word = Signal(1 + pixels * sum(kept), name=f"{name}kept")
     above = Signal(len(word), name=f"{name}above", reset_less=True)
     ended = above[0]
-    # A line that was longer than the memory may have lost its end, where lines are repeated that write.
-    at_end = ended | slot.over if reach > 1 else ended
-    m.d.comb += done.eq(slot.valid & slot.flush & at_end)
+    # A line that was longer than the memory may have lost its end, since repeated lines write, too. Where one
+    # line is repeated, slots that come behind its end are done as well; no beat follows as closely.
+    m.d.comb += done.eq(slot.flush & (ended | slot.over))
 
     # The slots of a frame are in its first line, or in one that has a line above, or the frame was given up.
     # The memory keeps the ends of lines, so lengths are compared without a counter.
@@ -349,12 +356,11 @@ def _lines(
         write.addr.eq(slot.place),
         word.eq(Cat(Mux(slot.flush, ended, slot.last) if reach > 1 else slot.last, *words)),
         write.data.eq(word),
-        write.en.eq(moves & slot.valid & (~slot.flush if reach == 1 else Const(1, 1))),
+        write.en.eq(moves & slot.valid),
     ]
     # The output register of the block RAM.
     raw = Signal(len(word), name=f"{name}read")
     m.d.comb += raw.eq(read.data)
     with m.If(moves):
         m.d.sync += above.eq(raw)
-    last = Mux(slot.flush, ended, slot.last)
-    return Columns(slot.valid, adds & lined[-1], slot.first, last, fresh, slot.final, bits)
+    return Columns(slot.valid, adds & lined[-1], slot.first, ended, fresh, slot.final, bits)

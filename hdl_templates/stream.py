@@ -1,4 +1,4 @@
-"""A pipeline without a halt between two streams with back-pressure."""
+"""What stands between two streams with back-pressure: a pipeline without a halt, or a register."""
 
 from dataclasses import dataclass
 
@@ -16,6 +16,26 @@ class Head:
 
     valid: Signal
     word: Signal
+
+
+def registered(m: Module, name: str, *, valid: Value, word: Value, ready: Value, taken: Value) -> Head:
+    """Hold one word of a stream in a register; one passes in each cycle in which it is taken.
+
+    Args:
+        m: the module under construction.
+        name: what the names of the registers begin with.
+        valid: whether a word is offered.
+        word: the word.
+        ready: driven here: whether it is taken. It follows ``taken`` without a register, so this must depend
+            on registers alone.
+        taken: whether the head is taken in this cycle, if there is one.
+    """
+    head = Head(Signal(name=f"{name}_head_valid"), Signal(len(word), name=f"{name}_head", reset_less=True))
+    moves = Signal(name=f"{name}_head_moves")
+    m.d.comb += [moves.eq(~head.valid | taken), ready.eq(moves)]
+    with m.If(moves):
+        m.d.sync += [head.valid.eq(valid), head.word.eq(word)]
+    return head
 
 
 def queued(

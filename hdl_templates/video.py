@@ -33,7 +33,7 @@ from hdl_templates.hierarchy import Part, place
 from hdl_templates.interfaces import vivado_interfaces
 from hdl_templates.scan import Pixels, scan
 from hdl_templates.squares import Squares, majorities
-from hdl_templates.stream import queued
+from hdl_templates.stream import queued, registered
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, VideoFormat
 from wnn2hdl.ir.pixel_bits import CHANNEL_BITS
 from wnn2hdl.ir.video import ANSWER_BITS, HEIGHT_BITS
@@ -200,15 +200,17 @@ class VideoCore(Part):
         latency = self.pixels[0].latency
         start, last = self.s_axis_video_tuser, self.s_axis_video_tlast
         taken = Signal(name="taken")
-        head = queued(
-            m,
-            "pixels",
-            valid=self.s_axis_video_tvalid,
-            ready=self.s_axis_video_tready,
-            word=Cat(*_delayed(m, "pixels", latency, start, last), *map(output_of, self.pixels)),
-            latency=latency,
-            taken=taken,
-        )
+        stream = {
+            "valid": self.s_axis_video_tvalid,
+            "ready": self.s_axis_video_tready,
+            "word": Cat(*_delayed(m, "pixels", latency, start, last), *map(output_of, self.pixels)),
+            "taken": taken,
+        }
+        # What keeps lines moves by registers alone, so a place for one beat is enough.
+        if self.has_lines and not latency:
+            head = registered(m, "pixels", **stream)
+        else:
+            head = queued(m, "pixels", latency=latency, **stream)
         pixels = Pixels(head.valid, head.word[0], head.word[1], None, _split(head.word[2:], self.pixels))
         if self.neighbours is not None:
             pixels, taken = self._look_around(m, pixels, taken, self.neighbours, reset, platform)

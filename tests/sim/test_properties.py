@@ -62,8 +62,8 @@ def test_a_core_keeps_its_properties(core: str, name: Property) -> None:
         ("stays", "~m_axis_video_tvalid | m_axis_video_tready", "1'b1"),
         # The second place of a line is read before it is written.
         ("in_order", "line_starts | line_goes_on | flush", "line_starts | flush"),
-        # A beat that finds the queue of pixels full is taken and lost.
-        ("all_come", "pixels_head_moves | (s_axis_video_tready", "1'b1 | (s_axis_video_tready"),
+        # A beat that finds the register of pixels full is taken and lost.
+        ("all_come", "~pixels_head_valid | taken", "1'b1"),
         # The repeated line has no end.
         ("goes_on", "(flush & ~done)", "flush"),
     ],
