@@ -64,7 +64,7 @@ class Design:
         edges: the edge filter behind pixels; None if the circuit has none.
         circuit: the target's circuit; its tables are LUT networks, and it is combinational.
         target: what the circuit is.
-        mode: ``exact``: equal to the model on every input; ``domain``: on the care sets only.
+        mode: ``exact``: equal to the model on every input that there is; ``domain``: on the care sets only.
         style: how LUT networks are written.
         name: what the names of all modules begin with.
         header: lines of the comment at the top of the Verilog.
@@ -105,6 +105,11 @@ class Design:
         """What the model looks at around a pixel; None of all other models."""
         encoder = self.model.encoder if isinstance(self.model, WisardModel) else None
         return encoder if isinstance(encoder, Neighbourhood | Context) else None
+
+    @property
+    def reads_grey(self) -> bool:
+        """Whether its pixel classifier reads grey pixels alone, so that all other colours are don't-cares."""
+        return self.video is not None and self.video.is_mono and self.surroundings is None
 
     @property
     def latency(self) -> int:
@@ -177,7 +182,8 @@ class Design:
         """
         lines = [f"{self.module(self.circuit.name)}: made by wnn2hdl from the model {self.model.digest()}."]
         if self.mode == "exact":
-            lines.append("Mode exact: equal to the model on every input.")
+            on = "every grey pixel" if self.reads_grey else "every input"
+            lines.append(f"Mode exact: equal to the model on {on}.")
         else:
             lines.append("Mode domain: equal to the model on its care set; elsewhere it may answer anything.")
             lines += [
@@ -280,7 +286,7 @@ class Design:
     def check(self) -> None:
         """Check that the circuit is one that the model makes claims about, and mapped.
 
-        In exact mode a care set says at most what cannot occur at all.
+        In exact mode a care set says at most what cannot occur at all, or that pixels are grey.
 
         Raises:
             ValueError: it is not.
@@ -315,5 +321,6 @@ class Design:
         if self.target.classifies and care_sets(self.circuit).keys().isdisjoint(CLASSIFIERS):
             raise ValueError(f"the {self.target.name} holds no classifier")
         for name, care in care_sets(self.circuit).items():
-            if self.mode == "exact" and care.kind not in ("everything", "implied"):
+            free = ("everything", "implied", *(["codes"] if self.reads_grey and name == "pixel" else []))
+            if self.mode == "exact" and care.kind not in free:
                 raise ValueError(f"{name} has don't-cares in exact mode")

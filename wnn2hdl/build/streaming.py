@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wnn2hdl.build.design import Design
-from wnn2hdl.errors import InputError
 from wnn2hdl.evaluation.squares import vote
 from wnn2hdl.ir import CHANNELS, WINDOW_BITS, Context, Neighbourhood, bits_to_codes, codes_to_bits
 from wnn2hdl.ir.context import box_sums
@@ -125,11 +124,7 @@ def _majorities(design: Design, classes: NDArray[np.uint8]) -> NDArray[np.uint8]
 
 
 def sample_frames(design: Design) -> Beats:
-    """Frames of several sizes on which a core is simulated, of random cared-for pixels.
-
-    Raises:
-        InputError: its pixels are grey, and none that is grey is cared for.
-    """
+    """Frames of several sizes on which a core is simulated, of random cared-for pixels."""
     assert design.video is not None
     pixels = _sample_pixels(design)
     rng = np.random.default_rng(_SEED)
@@ -148,13 +143,6 @@ def _sample_pixels(design: Design) -> NDArray[np.uint8]:
     claim = next(claims[part] for part in ("pixel", "taps", "planes") if part in claims)
     if design.video.is_mono:
         greys = np.repeat(np.arange(1 << CHANNEL_BITS, dtype=np.uint8)[:, np.newaxis], len(CHANNELS), axis=1)
-        cared = claim.cared({"rgb": pixel_bits(greys)}).all(axis=1)
-        if not cared.any():
-            raise InputError(
-                "the care imagery has no grey pixel",
-                value="--format mono",
-                hint="give grey imagery with --care",
-            )
-        return greys[cared]
+        return greys[claim.cared({"rgb": pixel_bits(greys)}).all(axis=1)]
     assert claim.stimulus is not None
     return np.asarray(bits_to_pixels(claim.stimulus()["rgb"])[:, 0])

@@ -247,6 +247,14 @@ def examples(encoder: Relational) -> dict[int, tuple[int, int, int]]:
     return found
 
 
+def grey_codes(encoder: PixelEncoder) -> NDArray[np.bool_]:
+    """Which codes occur on grey pixels, whose channels are equal: bool ``[2**width]``."""
+    greys = np.repeat(np.arange(1 << CHANNEL_BITS, dtype=np.uint8)[:, np.newaxis], len(CHANNELS), axis=1)
+    flags = np.zeros(1 << encoder.width, dtype=np.bool_)
+    flags[encoder.codes(greys)] = True
+    return flags
+
+
 def occurring(encoder: PixelEncoder) -> NDArray[np.bool_]:
     """Which codes occur on any pixel: bool ``[2**width]``; all of a `BitSelect`."""
     if isinstance(encoder, BitSelect):

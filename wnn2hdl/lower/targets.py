@@ -8,6 +8,7 @@ from wnn2hdl.ir import (
     WINDOW_BITS,
     Context,
     EdgeFilter,
+    Encoder,
     FeatureEncoder,
     Neighbourhood,
     PixelEncoder,
@@ -16,10 +17,11 @@ from wnn2hdl.ir import (
     Words,
     picture_encoder,
 )
-from wnn2hdl.ir.care import CareSet, Everything
+from wnn2hdl.ir.care import CareSet, Codes, Everything
 from wnn2hdl.ir.circuit import Circuit
 from wnn2hdl.ir.engine import EngineFormat
 from wnn2hdl.ir.models import AnyModel, LogicModel, NetworkModel, TableSumModel
+from wnn2hdl.ir.relational import grey_codes
 from wnn2hdl.ir.video import MAX_CLASSES
 from wnn2hdl.lower import context, deforestation, gates, structural, sums
 
@@ -77,6 +79,19 @@ def _pixel(of: Ingredients) -> Circuit:
     return deforestation.pixel(model, of.cared("pixel", model.encoder.width))
 
 
+def _grey(of: Ingredients, encoder: Encoder) -> Circuit:
+    """The pixel classifier where pixels are grey: other codes than theirs are free."""
+    assert isinstance(encoder, PixelEncoder)
+    cared = of.cared("pixel", encoder.width).project(tuple(range(encoder.width))) & grey_codes(encoder)
+    if not cared.any():
+        raise InputError(
+            "the care imagery has no grey pixel",
+            value="--format mono",
+            hint="give grey imagery with --care",
+        )
+    return deforestation.pixel(_wisard(of), Codes(cared))
+
+
 def _edge(of: Ingredients) -> Circuit:
     assert of.edges is not None
     return deforestation.edge(of.edges, of.cared("edge", WINDOW_BITS))
@@ -104,7 +119,7 @@ def _video(of: Ingredients) -> Circuit:
         counted = context.context(model, encoder, of.cared("context", encoder.width))
         circuits = {"classifier": context.planes(encoder), "decision": counted}
     else:
-        circuits = {"classifier": _pixel(of)}
+        circuits = {"classifier": _grey(of, encoder) if of.video.is_mono else _pixel(of)}
     return deforestation.video(circuits | ({"window": _edge(of)} if of.video.has_edges else {}))
 
 

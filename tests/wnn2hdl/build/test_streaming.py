@@ -8,12 +8,12 @@ import pytest
 
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.design import Mode
-from wnn2hdl.build.emission import video_part
+from wnn2hdl.build.emission import outermost_part, video_part
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.build.playback import play
-from wnn2hdl.build.streaming import framed_answers, sample_frames
+from wnn2hdl.build.streaming import beats, framed_answers, sample_frames
 from wnn2hdl.build.verification import open_build, verify_build
-from wnn2hdl.emit import stream_testbench, stream_vectors
+from wnn2hdl.emit import cells_model, stream_testbench, stream_vectors, verilog
 from wnn2hdl.errors import CheckError, InputError, ToolError
 from wnn2hdl.evaluation.accuracy import with_halo
 from wnn2hdl.evaluation.classifiers import model_classifier
@@ -145,8 +145,8 @@ def test_a_wrong_answer_is_found_in_icarus(video: Path) -> None:
     design, files, _ = open_build(video)
     assert design.video is not None
     assert design.registers is not None
-    beats = sample_frames(design)
-    wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
+    frames = sample_frames(design)
+    wrong = Beats(frames.pixels, frames.answers ^ np.uint8(1), frames.starts, frames.ends, frames.height)
     with pytest.raises(CheckError, match="icarus disagrees"):
         run_stream(wrong, design.video, design.registers, design.outermost, files.simulated, "icarus")
 
@@ -154,11 +154,11 @@ def test_a_wrong_answer_is_found_in_icarus(video: Path) -> None:
 def test_a_wrong_answer_and_a_missing_one_are_found(video: Path) -> None:
     design, _, _ = open_build(video)
     assert design.video is not None
-    beats = sample_frames(design)
-    wrong = Beats(beats.pixels, beats.answers ^ np.uint8(1), beats.starts, beats.ends, beats.height)
+    frames = sample_frames(design)
+    wrong = Beats(frames.pixels, frames.answers ^ np.uint8(1), frames.starts, frames.ends, frames.height)
     with pytest.raises(CheckError, match="at beat 0"):
         simulate_stream(video_part(design), wrong)
-    endless = Beats(beats.pixels, beats.answers, beats.starts, beats.ends, beats.height + 1)
+    endless = Beats(frames.pixels, frames.answers, frames.starts, frames.ends, frames.height + 1)
     with pytest.raises(CheckError, match="stops after"):
         simulate_stream(video_part(design), endless)
 
@@ -174,13 +174,13 @@ def test_a_core_of_classes_alone_has_no_edge_filter(model: WisardModel) -> None:
 
 def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
     frame = np.array([[0xABCDEF, 1]], dtype=np.uint32)
-    beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)])
+    sent = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)])
     video = VideoFormat(answer="class")
-    assert stream_vectors(beats, video) == "280abcdef\n101000001\n"
+    assert stream_vectors(sent, video) == "280abcdef\n101000001\n"
     text = stream_testbench(
         name="x",
         video=video,
-        beats=beats,
+        beats=sent,
         registers=video_registers("0" * 64),
         vectors_file="x.hex",
         sources=["x.v"],
@@ -188,8 +188,8 @@ def test_vectors_and_testbench_agree_on_the_width_of_a_word() -> None:
     assert "reg [33:0] vectors [0:1];" in text
     video = VideoFormat(answer="class", pixels_per_clock=2, format="mono")
     frame = np.array([[0xAB, 1]], dtype=np.uint32)
-    beats = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)], 2)
-    assert stream_vectors(beats, video) == "3018001ab\n"
+    sent = Beats.of([frame], [np.array([[0x80, 1]], dtype=np.uint8)], 2)
+    assert stream_vectors(sent, video) == "3018001ab\n"
 
 
 @pytest.mark.simulator
@@ -217,6 +217,15 @@ def test_grey_pixels_are_three_equal_channels_and_colours_are_refused(
 ) -> None:
     options = CompileOptions(target="video", max_width=64, format="mono", pixels_per_clock=4)
     assert compile_model(model, tmp_path / "grey", options, silent).failure is None
+    design, _, report = open_build(tmp_path / "grey")
+    assert isinstance(model.encoder, BitSelect)
+    greys = np.repeat(np.arange(256, dtype=np.uint8)[:, np.newaxis], 3, axis=1)
+    assert report["care"]["codes"] == len(np.unique(model.encoder.codes(greys))) < report["care"]["of"]
+    assert report["proof"]["status"] == "proved"
+    assert "on every grey pixel." in (tmp_path / "grey" / "grey.v").read_text()
+    colours = plan(model, "mine", replace(options, format="GBR"), silent).design
+    assert len(design.networks["pixel"].cells) < len(colours.networks["pixel"].cells)
+    assert not verify_build(tmp_path / "grey", silent)[0]
     picture = imagery / "7.png"
     with pytest.raises(InputError, match="takes grey pixels"):
         play(tmp_path / "grey", picture, "icarus", silent)
@@ -229,9 +238,8 @@ def test_grey_pixels_are_three_equal_channels_and_colours_are_refused(
 def test_grey_pixels_need_grey_imagery_for_a_care_set(model: WisardModel, tmp_path: Path) -> None:
     write_png(tmp_path / "red.png", np.full((4, 4, 3), [[[255, 0, 0]]], dtype=np.uint8))
     options = CompileOptions(target="video", mode="domain", care=tmp_path, format="mono")
-    design = plan(model, "mine", options, silent).design
     with pytest.raises(InputError, match="no grey pixel"):
-        sample_frames(design)
+        plan(model, "mine", options, silent)
 
 
 @pytest.mark.simulator
@@ -266,6 +274,37 @@ def test_squares_of_a_picture_are_those_of_the_software(
 def test_squares_are_as_wide_as_whole_beats(model: WisardModel) -> None:
     with pytest.raises(InputError, match="whole beats: --square 5 --pixels-per-clock 2"):
         plan(model, "mine", CompileOptions(target="video", square=5, pixels_per_clock=2), silent)
+
+
+@pytest.mark.simulator
+@pytest.mark.realdata
+@pytest.mark.slow
+@pytest.mark.parametrize("per_clock", [1, 2, 4])
+def test_a_real_chip_of_odd_width_passes_in_verilator(
+    model: WisardModel, realdata: Path, tmp_path: Path, per_clock: int
+) -> None:
+    chip = read_rgb(sorted((realdata / "paper" / "chips").glob("*.jpg"))[0])[:101, :147]
+    options = CompileOptions(target="video", max_width=150, pixels_per_clock=per_clock, square=20, effort=0)
+    design = plan(model, "real", options, silent).design
+    sources = [tmp_path / "cells.v", tmp_path / "core.v"]
+    for source, text in zip(
+        sources, (cells_model(), verilog(outermost_part(design), prefix="real_", header=())), strict=True
+    ):
+        source.write_text(text)
+    assert design.video is not None
+    frame = beats(design, [chip[:7], chip])
+    assert design.registers is not None
+    run_stream(frame, design.video, design.registers, design.outermost, sources, "verilator")
+    # What came out is what the software answers.
+    padded = design.video.padded(chip)
+    classes = PixelClassifier(model).classify(padded)
+    assert design.edges is not None
+    edges = design.edges.evaluate(framed_window_codes(classes != 0))
+    found = frame.answers.reshape(-1, classes.shape[1])[7:]
+    assert np.array_equal(found, classes | edges.astype(np.uint8) << 7)
+    assert 0 < classes.mean() < 1
+    voted = vote(classes, None, side=20, share=1.0, seed=0, count=2)[::20, ::20]
+    assert np.array_equal(frame.squares[1], voted)
 
 
 @pytest.fixture(scope="module")
