@@ -124,16 +124,18 @@ def candidates(images: Sequence[ColourHistogram], seed: int) -> list[Candidate]:
     return found
 
 
-def thermometers(pixels: NDArray[np.uint8]) -> Bits:
-    """Comparisons that stand for thresholds of the ratios of `PAIRS`."""
+def thermometers(
+    pixels: NDArray[np.uint8], pairs: Sequence[tuple[str, str]] = PAIRS, levels: int = LEVELS
+) -> Bits:
+    """Comparisons that stand for thresholds of ratios of channels, ``levels`` of each pair."""
     found: dict[str, None] = {}
-    share = (np.arange(LEVELS) + 1) / (LEVELS + 1)
-    for one, other in PAIRS:
+    share = (np.arange(levels) + 1) / (levels + 1)
+    for one, other in pairs:
         level = pixels[:, [CHANNELS.index(one), CHANNELS.index(other)]] + 0.5
         ratio = level[:, 0] / level[:, 1]
         above = ratio >= np.quantile(ratio, share)[:, np.newaxis]
-        best = np.zeros(LEVELS)
-        names = [""] * LEVELS
+        best = np.zeros(levels)
+        names = [""] * levels
         for weights, lows in product({pair[::step] for pair in RATIOS for step in (1, -1)}, LOWEST):
             left, right = (
                 Weighted(channel, weight << low, low)

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.light import SHAPES, threshold
+from benchmarks.pixel_networks import EVERY, PAIRS, thermometers
 from benchmarks.rivals import (
     TREES,
     Threshold,
@@ -41,16 +42,19 @@ from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels
 from wnn2hdl.evaluation.classifiers import PictureClassifier, model_classifier
 from wnn2hdl.evaluation.light import light_curve
 from wnn2hdl.evaluation.measures import accuracy, ious
-from wnn2hdl.ir import Comparison, PixelEncoder, WisardModel
+from wnn2hdl.ir import Comparison, PixelEncoder, Relational, WisardModel
 from wnn2hdl.markdown import head, row
 from wnn2hdl.training.bitselect import LUTS, select_bits
 from wnn2hdl.training.budget import WITHIN, pixel_luts
-from wnn2hdl.training.comparisons import select_comparisons
+from wnn2hdl.training.comparisons import draw_pixels, select_comparisons
 from wnn2hdl.training.crossval import EXPOSURES, FOLDS
 from wnn2hdl.training.discriminators import train
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 SIDE, SHARE = 20, 0.5
+
+RATIO_WISARDS = ((4, 16), (6, 16), (6, 48))
+"""Thresholds of R/B, and of R/G, that discriminators read, and their RAMs: 48 are three of 16 that vote."""
 
 Trainer = Callable[[Dataset], PictureClassifier]
 ModelTrainer = Callable[[Dataset], WisardModel]
@@ -116,6 +120,17 @@ def circuits(mappings: int, seed: int) -> dict[str, list[ModelTrainer]]:
             dataset, high_bits(), address_bits=4, rams=16, bleaching=None, seed=mapping, progress=silent
         )
 
+    def of_ratios(levels: int, rams: int, mapping: int) -> ModelTrainer:
+        def discriminators(dataset: Dataset) -> WisardModel:
+            images = [colour_histogram(image, len(CLASSES)) for image in dataset]
+            drawn = draw_pixels(images, np.random.default_rng(seed), smooth=False)
+            bits = Relational(thermometers(drawn.pixels[::EVERY], PAIRS[:2], levels))
+            return train(
+                dataset, bits, address_bits=4, rams=rams, bleaching=None, seed=mapping, progress=silent
+            )
+
+        return discriminators
+
     def bit_selection(count: int, dataset: Dataset) -> WisardModel:
         images = [colour_histogram(image, len(CLASSES)) for image in dataset]
         return select_bits(images, CLASSES, luts=count, seed=seed)
@@ -138,6 +153,12 @@ def circuits(mappings: int, seed: int) -> dict[str, list[ModelTrainer]]:
     found[f"WiSARD n = 4, k = 16, mean of {mappings} mappings"] = [
         discriminators(seed + i) for i in range(mappings)
     ]
+    found |= {
+        f"the same of {2 * levels} ratios, k = {rams}": [
+            of_ratios(levels, rams, seed + i) for i in range(mappings)
+        ]
+        for levels, rams in RATIO_WISARDS
+    }
     found |= {f"bit selection, {count} LUT": [partial(bit_selection, count)] for count in (1, 2)}
     found |= {
         f"comparisons of channels, {count} LUTs{', smooth aim' if smooth else ''}": [

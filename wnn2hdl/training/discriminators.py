@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
-from wnn2hdl.ir import COLOURS, BitSelect, WisardModel, all_codes
+from wnn2hdl.ir import COLOURS, PixelEncoder, WisardModel, all_codes
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
@@ -21,7 +21,7 @@ IDENTICAL = "identical_images"
 """Of a model's training: names of images that show the same pixels, one list for each picture."""
 
 
-def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -> NDArray[np.int64]:
+def image_histograms(dataset: Dataset, encoder: PixelEncoder, progress: Progress) -> NDArray[np.int64]:
     """How often each code occurs, by image and class: int64 ``[images, classes, 2**width]``.
 
     One image is in memory at a time; the cost grows with the pixels.
@@ -45,7 +45,7 @@ def image_histograms(dataset: Dataset, encoder: BitSelect, progress: Progress) -
 
 def train(
     dataset: Dataset,
-    encoder: BitSelect,
+    encoder: PixelEncoder,
     *,
     address_bits: int,
     rams: int,
@@ -117,6 +117,6 @@ def with_colours(model: WisardModel, dataset: Dataset, progress: Progress) -> Wi
     return replace(model, colours=np.flatnonzero(seen), training=dict(model.training) | figures)
 
 
-def _histogram(image: LabelledImage, encoder: BitSelect, shape: tuple[int, int]) -> NDArray[np.int64]:
+def _histogram(image: LabelledImage, encoder: PixelEncoder, shape: tuple[int, int]) -> NDArray[np.int64]:
     cells = image.labels.astype(np.int64) * shape[1] + encoder.codes(image.pixels)
     return np.bincount(cells, minlength=shape[0] * shape[1]).reshape(shape)
