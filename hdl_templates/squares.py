@@ -15,7 +15,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value, signed
 from amaranth.lib.memory import Memory
 
 from hdl_templates.scan import Pixels
-from hdl_templates.stream import Head, queued
+from hdl_templates.stream import CHAIN, Head, named, queued
 
 LATENCY = 3
 """Cycles from a beat to the majority of the square that it completes."""
@@ -194,4 +194,7 @@ def _winner(m: Module, totals: Sequence[Value]) -> Value:
         ahead = Signal(name=f"squares_is_{number}")
         m.d.comb += ahead.eq(total > most)
         most, winner = Mux(ahead, total, most), Mux(ahead, number, winner)
+        if number % CHAIN == 0:
+            most = named(m, f"squares_most_{number}", most)
+            winner = named(m, f"squares_winner_{number}", winner)
     return winner

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 from amaranth.hdl import Module, Mux, Signal, Value
 
+CHAIN = 16
+"""Choices inside one another, at most: Amaranth's simulator writes Python, which nests 100 levels."""
+
 
 @dataclass(frozen=True)
 class Head:
@@ -16,6 +19,13 @@ class Head:
 
     valid: Signal
     word: Signal
+
+
+def named(m: Module, name: str, value: Value) -> Signal:
+    """A signal that is the value."""
+    signal = Signal(value.shape(), name=name)
+    m.d.comb += signal.eq(value)
+    return signal
 
 
 def registered(m: Module, name: str, *, valid: Value, word: Value, ready: Value, taken: Value) -> Head:
@@ -108,6 +118,8 @@ def queued(
         m.d.sync += [later.eq(earlier) for earlier, later in zip([word, *words], words, strict=False)]
     oldest: Value = words[0]
     for place, later in enumerate(words[1:], start=1):
+        if place % CHAIN == 0:
+            oldest = named(m, f"{name}_oldest_{place}", oldest)
         oldest = Mux(stored == place + 1, later, oldest)
     with m.If(moves):
         m.d.sync += [head.valid.eq(any_stored | arrives), head.word.eq(Mux(any_stored, oldest, word))]

@@ -153,8 +153,8 @@ class VideoCore(Part):
 
     @property
     def places(self) -> int:
-        """Words of the memory, a power of two: the longest line has as many beats."""
-        return 1 << (self.video.beats_of(self.video.max_width) - 1).bit_length()
+        """Words of the memory, a power of two, at least 2, so that there are addresses."""
+        return 1 << (max(self.video.beats_of(self.video.max_width), 2) - 1).bit_length()
 
     @property
     def marks_lines(self) -> bool:

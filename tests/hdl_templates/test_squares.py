@@ -59,6 +59,7 @@ def classes_of(pixels: NDArray[np.uint8], per_clock: int = 1, bits: int = 1) -> 
         ("edge", 2, 2, 2, 2),
         ("class", 4, 4, 1, 4),
         ("both", 16, 2, 0, 1),
+        ("class", 3, 128, 0, 1),
     ],
 )
 def test_squares_are_those_of_the_software_and_answers_are_as_without_them(

@@ -42,6 +42,7 @@ SECTIONS = {
         "--pixels-per-clock",
         "--format",
         "--answer",
+        "--square",
         "--style",
         "--effort",
     ),

@@ -48,15 +48,27 @@ def read_model_file(path: Path) -> dict[str, Any]:
         raise ModelFileError(
             "no such kind of model", value=f"{path} (kind {kind!r})", hint=f"known are {known}"
         )
-    error = jsonschema.exceptions.best_match(_validator(kind).iter_errors(data))
-    if error is not None:
+    worst = max(_validator(kind).iter_errors(data), key=jsonschema.exceptions.relevance, default=None)
+    if worst is not None:
+        error = _innermost(worst)
         where = "/".join(str(step) for step in error.absolute_path) or "the top level"
+        # What is wrong stands behind the value, which may be long.
+        text = error.message if len(error.message) <= 120 else f"{error.message[:60]} … {error.message[-60:]}"
         raise ModelFileError(
-            "the model file is damaged",
-            value=f"{path} (at {where}: {error.message[:120]})",
-            hint="save it again",
+            "the model file is damaged", value=f"{path} (at {where}: {text})", hint="save it again"
         )
     return data
+
+
+def _innermost(error: jsonschema.ValidationError) -> jsonschema.ValidationError:
+    """Where none of several kinds fits, what is wrong by the kind that the object says it is."""
+    others = {
+        inner.schema_path[0]
+        for inner in error.context
+        if inner.validator == "const" and list(inner.path) == ["kind"]
+    }
+    inside = [inner for inner in error.context if inner.schema_path[0] not in others]
+    return _innermost(max(inside, key=jsonschema.exceptions.relevance)) if inside else error
 
 
 def contradicting(path: Path, error: Exception) -> ModelFileError:

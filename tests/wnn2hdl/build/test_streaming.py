@@ -8,7 +8,7 @@ import pytest
 
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.design import Mode
-from wnn2hdl.build.emission import outermost_part, video_part
+from wnn2hdl.build.emission import emit, outermost_part, video_part
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.build.playback import play
 from wnn2hdl.build.streaming import beats, framed_answers, sample_frames
@@ -131,6 +131,27 @@ def test_the_waves_of_a_small_picture_are_recorded(video: Path, tmp_path: Path) 
     write_png(picture, np.random.default_rng(0).integers(0, 256, (5, 6, 3), dtype=np.uint8))
     assert play(video, picture, "amaranth", silent, tmp_path / "waves.vcd").windows == 30
     assert "m_axis_video_tvalid" in (tmp_path / "waves.vcd").read_text()
+
+
+@pytest.mark.simulator
+@pytest.mark.parametrize(
+    "extreme",
+    [
+        # Lines of one beat, and a queue behind the longest pipeline.
+        CompileOptions(target="video", max_width=2, pixels_per_clock=4, answer="class", square=4),
+        CompileOptions(target="video", max_width=2, stages=64, answer="class", square=2),
+    ],
+)
+def test_the_shortest_lines_and_the_longest_pipelines_are_right(
+    extreme: CompileOptions, model: WisardModel, tmp_path: Path
+) -> None:
+    design = plan(model, "core", replace(extreme, effort=0), silent).design
+    frames = beats(design, [np.random.default_rng(0).integers(0, 256, (3, 2, 3), dtype=np.uint8)] * 2)
+    simulate_stream(video_part(design), frames)
+    files = emit(design, tmp_path, sobel_threshold=128)
+    assert design.video is not None
+    assert design.registers is not None
+    run_stream(frames, design.video, design.registers, design.outermost, files.simulated, "icarus")
 
 
 def test_a_picture_wider_than_the_lines_is_refused(video: Path, tmp_path: Path) -> None:

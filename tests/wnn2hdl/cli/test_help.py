@@ -55,6 +55,11 @@ def test_what_does_not_fit_is_listed_by_name() -> None:
     assert "More, explained" not in CliRunner().invoke(app, ["compile", "--help-all"]).output
 
 
+def test_all_that_decides_a_circuit_stands_under_a_heading() -> None:
+    listed = {option for names in command("compile").sections.values() for option in names}
+    assert {max(option.opts, key=len) for option in options("compile")} - listed == {"--output", "--json"}
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_sections_name_options_that_exist_once(name: str) -> None:
     listed = [option for names in command(name).sections.values() for option in names]

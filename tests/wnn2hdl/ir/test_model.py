@@ -173,6 +173,11 @@ def broken(**changes: object) -> dict[str, Any]:
         (broken(classes=["a"]), "the model file is damaged: .*at classes"),
         (broken(encoder={"kind": "bits", "bits": ["X9"]}), "the model file is damaged: .*at encoder"),
         (broken(encoder={"kind": "relational", "bits": ["R>B"]}), "the model file is damaged: .*at encoder"),
+        (broken(encoder={"kind": "context", "bits": [7]}), r"at encoder/bits/0: 7 is not of type 'string'\)"),
+        (
+            broken(encoder={"kind": "context", "bits": ["7x7(R[7:1]>=B[7:1])>=3"] * 9}),
+            r"at encoder/bits: \['7x7.* … .* has non-unique elements\)",
+        ),
         (broken(encoder={"kind": "relational", "bits": ["R>=R"]}), "contradicts itself: .*channel once"),
         (broken(colours=[4096]), "the model file is damaged: .*at colours"),
         (broken(colours=[1, 1]), "the model file is damaged: .*at colours"),
