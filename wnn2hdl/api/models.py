@@ -147,8 +147,15 @@ def train(
         progress: called with how far it is; by default a line is shown where somebody watches.
 
     Raises:
-        InputError: the images or masks cannot be used, or nothing fits the budget.
+        InputError: the images or masks cannot be used, two ways to choose a classifier are asked for, or
+            nothing fits the budget.
     """
+    if context is not None and (luts_per_pixel is not None or neighbourhood is not None):
+        raise InputError(
+            "context= chooses the classifier itself", hint="leave luts_per_pixel= and neighbourhood= out"
+        )
+    if nested and (luts_per_pixel is None or neighbourhood is not None):
+        raise InputError("only a choice within luts_per_pixel= is nested", hint="leave nested= out")
     dataset = labelled(images, masks, seed)
     with watched(progress) as report:
         if neighbourhood is not None:
@@ -268,7 +275,10 @@ def feature_table(
     """
     if isinstance(features, FeatureTable):
         return features
-    numbers = np.asarray(features, dtype=np.float64)
+    try:
+        numbers = np.asarray(features, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("features are numbers [samples, features]", value=str(error)) from error
     if labels is None or numbers.ndim != 2 or not numbers.size or len(labels) != len(numbers):
         raise InputError(
             "features are numbers [samples, features], with a label each",

@@ -243,6 +243,8 @@ def train_command(
         refuse(("--luts-per-pixel", "--neighbourhood", "--pareto"), "--context chooses the classifier itself")
     if luts_per_pixel is None or neighbourhood is not None or pareto:
         refuse(("--nested",), "only a choice within --luts-per-pixel is nested")
+    if not pareto and (luts_per_pixel is None or neighbourhood is not None):
+        refuse(("--trials",), "random mappings are tried within --luts-per-pixel and for --pareto only")
     # Before the training, so that a place that cannot be written is reported at once.
     make_folder(output.parent)
     points: tuple[Point, ...] = ()

@@ -235,7 +235,7 @@ def target_for(model: AnyModel, name: str | None) -> Target:
     """The target of that name, or the first one that the model can be compiled to.
 
     Raises:
-        InputError: the model cannot be compiled to this target, or to any.
+        InputError: there is no such target, or the model cannot be compiled to it, or to any.
     """
     fitting = [target for target in TARGETS.values() if target.fits(model)]
     if not fitting:
@@ -246,6 +246,8 @@ def target_for(model: AnyModel, name: str | None) -> Target:
         )
     if name is None:
         return fitting[0]
+    if name not in TARGETS:
+        raise InputError("there is no such target", value=name, hint=f"choose {', '.join(TARGETS)}")
     if TARGETS[name] not in fitting:
         raise InputError(
             f"the model reads {_reads(model)}",

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from wnn2hdl.dataset import Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.ir import CHANNELS, Comparison, Context, WisardModel, all_codes, codes_to_bits
-from wnn2hdl.ir.context import Count, box_sums
+from wnn2hdl.ir.context import SIZES, Count, box_sums
 from wnn2hdl.ir.relational import Weighted
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import look_up_table
@@ -82,8 +82,12 @@ def train_context(dataset: Dataset, size: int, *, seed: int, progress: Progress)
 
     Raises:
         InputError: an image cannot be read, is smaller than a square or labelled in part only, a class has no
-            pixel, there are not two classes, or fewer than three images.
+            pixel, there are not two classes or fewer than three images, or no such size.
     """
+    if size not in SIZES:
+        raise InputError(
+            "there is no such context", value=size, hint=f"choose one of {', '.join(map(str, SIZES))}"
+        )
     if len(dataset.classes) != 2:
         raise InputError(
             "context separates two classes",

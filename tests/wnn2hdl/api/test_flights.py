@@ -45,3 +45,9 @@ def test_a_match_engine_is_asked_for_with_its_sizes(folder: Path) -> None:
 def test_a_flight_without_a_search_is_refused(folder: Path) -> None:
     with pytest.raises(InputError, match="nothing is to be searched"):
         locate(window_m=None, whole_map=False)
+
+
+def test_a_method_that_does_not_exist_is_named(folder: Path) -> None:
+    flight = recording(folder / "map.tif", folder / "frames", folder / "poses.csv", 120.0)
+    with pytest.raises(InputError, match="there is no such method: gray; choose of perspective-canny"):
+        locate(flight, methods=["gray"])

@@ -106,8 +106,31 @@ def test_what_does_not_fit_is_refused(images: object, masks: object, fault: str)
 
 
 @pytest.mark.parametrize(
+    ("choice", "fault"),
+    [
+        ({"context": 7, "luts_per_pixel": 10}, "context= chooses the classifier itself"),
+        ({"context": 7, "neighbourhood": 3}, "context= chooses the classifier itself"),
+        ({"context": 5}, "there is no such context: 5; choose one of 3, 7, 15, 31"),
+        ({"nested": True}, "only a choice within luts_per_pixel= is nested"),
+        ({"nested": True, "neighbourhood": 3, "luts_per_pixel": 4}, "only a choice within luts_per_pixel="),
+    ],
+)
+def test_choices_that_contradict_each_other_are_refused(
+    arrays: Arrays, choice: dict[str, int], fault: str
+) -> None:
+    with pytest.raises(InputError, match=fault):
+        train(*arrays, **choice)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
     ("features", "labels", "fault"),
     [
+        (
+            [["red"], ["green"]],
+            ["a", "b"],
+            "features are numbers .* could not convert string to float: 'red'",
+        ),
+        ([[1], [2, 3]], ["a", "b"], "features are numbers"),
         ([[1, 2], [3, 4]], ["a"], "with a label each"),
         ([1, 2], ["a", "b"], "features are numbers"),
         ([[1, 2], [3, np.nan]], ["a", "b"], "not a finite number"),

@@ -139,6 +139,9 @@ def test_options_that_a_neighbourhood_has_no_use_for_are_refused(run: Run, tmp_p
 
     assert "--neighbourhood chooses the classifier itself: --rams" in train("--rams", "4")
     assert "leave --neighbourhood out" in train("--pareto")
+    assert "mappings are tried within --luts-per-pixel and for --pareto only: --trials" in train(
+        "--trials", 3
+    )
     assert "takes 13 LUTs: 4 allowed" in train("--luts-per-pixel", "4")
 
 
@@ -149,6 +152,9 @@ def test_options_that_a_context_has_no_use_for_are_refused(run: Run, tmp_path: P
     assert "--context chooses the classifier itself: --bits" in train("--bits", "R7")
     assert "--context chooses the classifier itself: --luts-per-pixel" in train("--luts-per-pixel", "4")
     assert "--context chooses the classifier itself: --neighbourhood" in train("--neighbourhood", "3")
+    assert "mappings are tried within --luts-per-pixel and for --pareto only: --trials" in train(
+        "--trials", 3
+    )
 
 
 def test_pixels_left_out_are_reported_and_the_command_can_be_repeated(

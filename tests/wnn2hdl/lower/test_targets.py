@@ -75,3 +75,5 @@ def test_a_target_of_another_kind_of_model_is_refused() -> None:
         target_for(model(Neighbourhood(3, TAPS)), "pixel")
     with pytest.raises(InputError, match="the model reads single pixels: target neighbourhood"):
         target_for(model(PIXEL), "neighbourhood")
+    with pytest.raises(InputError, match="there is no such target: pixels; choose block, pixel, "):
+        target_for(model(PIXEL), "pixels")

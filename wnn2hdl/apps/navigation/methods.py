@@ -88,8 +88,11 @@ def engine_of(template: Shape | None, segment: Shape | None, keys: Collection[st
         keys: of the methods that are compared.
 
     Raises:
-        InputError: sizes are missing, are not for any of the methods, or there is no such engine.
+        InputError: there is no such method or engine, or sizes are missing or are not for any of the methods.
     """
+    known = (*METHODS, *ENGINE_METHODS)
+    if unknown := [key for key in keys if key not in known]:
+        raise InputError("there is no such method", value=unknown[0], hint=f"choose of {', '.join(known)}")
     asked = [key for key in keys if key in ENGINE_METHODS]
     if template is None and segment is None and not asked:
         return None

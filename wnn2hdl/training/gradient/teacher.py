@@ -121,7 +121,8 @@ def _cross_validated(
             continue
         try:
             fitted = _fitted(make, features[~test], labels[~test])
-        except (ValueError, np.linalg.LinAlgError):  # too few samples of a class for this kind
+        # Too few samples of a class for this kind, or, for discriminants, no feature that varies.
+        except (ValueError, IndexError, np.linalg.LinAlgError):
             return 0.0
         right += int((fitted.predict(features[test]) == labels[test]).sum())
     return right / len(labels)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from wnn2hdl.errors import InputError
 from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.training.gradient import Architecture, Recipe, train_network, usual_made_up
 from wnn2hdl.training.gradient.teacher import choose_teacher, made_up
@@ -34,6 +35,35 @@ def test_two_samples_suffice_for_a_teacher() -> None:
     teacher = choose_teacher(np.array([[0.0], [9.0]]), np.array([0, 1]), seed=0)
     assert teacher.accuracy == 0
     assert teacher.classifier.predict([[1.0], [8.0]]).tolist() == [0, 1]
+
+
+@pytest.mark.parametrize("value", [5.0, 1e302])
+def test_features_that_never_vary_are_refused_as_without_a_teacher(value: float) -> None:
+    features = np.full((20, 2), value)
+    for rows in (0, 100):
+        with pytest.raises(InputError, match="no feature tells samples apart in this format of words"):
+            train_network(
+                features,
+                np.arange(20) % 2,
+                ("a", "b"),
+                Architecture(BYTES, made_up=rows),
+                Recipe(epochs=2),
+                lambda *_: None,
+            )
+
+
+def test_a_teacher_learns_from_features_as_hardware_saturates_them() -> None:
+    features = np.array([[0.0], [10.0], [1e308], [-1e308]] * 10)
+    found = train_network(
+        features,
+        (features[:, 0] > 5).astype(np.int64),
+        ("low", "high"),
+        Architecture(BYTES, made_up=500),
+        Recipe(epochs=2),
+        lambda *_: None,
+    )
+    assert found.teacher is not None
+    assert found.teacher.accuracy == 1
 
 
 def test_rows_lie_between_neighbours_and_are_words() -> None:
