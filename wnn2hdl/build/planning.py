@@ -1,5 +1,6 @@
 """From a model and the user's choices to a design: care sets, edge filter, minimised networks."""
 
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -301,7 +302,7 @@ def _engine(options: CompileOptions) -> EngineFormat:
     assert options.segment is not None
     assert options.clock is not None
     assert options.frames_per_second is not None
-    cycles = int(options.clock * 1e6 / options.frames_per_second)
+    cycles = int(min(options.clock * 1e6 / options.frames_per_second, sys.maxsize))
     try:
         return EngineFormat.fast_enough(options.template, options.segment, cycles)
     except ValueError as error:

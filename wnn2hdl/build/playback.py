@@ -97,7 +97,7 @@ def play(
     if window is None:
         raise InputError(
             "only a circuit that reads a window runs over a picture",
-            value=f"{folder} is a {design.target.name}",
+            value=f"{folder} (target {design.target.name})",
         )
     rgb = read_rgb(picture, reading)
     side = math.isqrt(window.width // PIXEL_BITS)

@@ -92,7 +92,8 @@ def parts_table(report: dict[str, Any], folder: Path) -> str:
     lines = [printed(table)]
     if report["latency"]:
         stage = f"a stage takes {report['stage_ps']} ps with wires, by the delay model"
-        lines.append(f"latency: {report['latency']} cycles; {stage}")
+        cycles = "1 cycle" if report["latency"] == 1 else f"{report['latency']} cycles"
+        lines.append(f"latency: {cycles}; {stage}")
     lines += [
         f"proof: {proof['status']} in {proof['seconds']:.1f} s, {proof['method']}{earlier}",
     ]

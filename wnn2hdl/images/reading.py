@@ -53,8 +53,9 @@ def read_rgb(path: Path, reading: Reading = Reading()) -> NDArray[np.uint8]:  # 
     """
     picture = read_picture(path, reading)
     if picture.left_out:
+        pixels = "1 pixel" if picture.left_out == 1 else f"{picture.left_out} pixels"
         raise InputError(
-            f"{picture.left_out} pixels of the picture hold no data, and a whole one is needed",
+            f"{pixels} of the picture without data, and a whole one is needed",
             value=path,
             hint="cut them off",
         )

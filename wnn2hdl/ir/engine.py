@@ -300,12 +300,14 @@ def _place(position: Shape) -> int:
 
 
 def _check_sizes(template: Shape, segment: Shape) -> None:
+    small, large = ("x".join(map(str, shape)) for shape in (template, segment))
     for inner, outer in zip(template, segment, strict=True):
-        if not 2 <= inner < outer <= MAX_SIDE:
-            raise ValueError(
-                f"a template of {template[0]}x{template[1]} does not move in a segment of "
-                f"{segment[0]}x{segment[1]}, of {MAX_SIDE}x{MAX_SIDE} at most"
-            )
+        if inner < 2:
+            raise ValueError(f"a template has at least 2x2 pixels, not {small}")
+        if outer > MAX_SIDE:
+            raise ValueError(f"a segment has at most {MAX_SIDE}x{MAX_SIDE} pixels, not {large}")
+        if inner >= outer:
+            raise ValueError(f"a template of {small} does not move in a segment of {large}")
 
 
 def _shapes(template: Shape, segment: Shape) -> Iterator[Shape]:

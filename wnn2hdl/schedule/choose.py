@@ -39,7 +39,7 @@ def for_clock(circuit: Circuit, megahertz: float, delays: Delays = XC7) -> Stage
     Raises:
         InputError: one cell alone takes longer than a cycle.
     """
-    return _for_period(circuit, int(1e6 / megahertz), delays)
+    return _for_period(circuit, _period(megahertz), delays)
 
 
 def for_instances(
@@ -67,7 +67,7 @@ def for_instances(
         chosen = [for_stages(parts[0], stages, delays)]
         period = chosen[0].period
     elif megahertz is not None:
-        chosen, period = [], int(1e6 / megahertz)
+        chosen, period = [], _period(megahertz)
     else:
         return None
     for part in parts[len(chosen) :]:
@@ -81,6 +81,11 @@ def for_instances(
         latencies |= pipeline.latencies
     places = {place: stage for pipeline in chosen for place, stage in pipeline.places.items()}
     return Stages(places, latencies, max(pipeline.period for pipeline in chosen))
+
+
+def _period(megahertz: float) -> int:
+    """The picoseconds of a cycle, of any positive clock: 1 at least, and a second at most."""
+    return int(min(max(1e6 / megahertz, 1), 1e12))
 
 
 def _for_period(circuit: Circuit, period: int, delays: Delays) -> Stages:

@@ -1,5 +1,6 @@
 """Match engines: compiled, proved, and the emitted Verilog in a simulator."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,12 @@ def test_the_testbench_passes_and_finds_scores_that_are_not_the_best(engine: Pat
     with pytest.raises(ToolError) as failed:
         run_icarus([files.cells, tmp_path / "wrong.v", files.testbench], top, cwd=tmp_path, timeout=120)
     assert "FAIL" in failed.value.output
+
+
+def test_a_rate_of_next_to_nothing_is_met(model: WisardModel) -> None:
+    engine = plan(model, "x", replace(OPTIONS, frames_per_second=1e-305), silent).design.engine
+    assert engine is not None
+    assert engine.lanes == 1
 
 
 @pytest.mark.parametrize(

@@ -70,7 +70,7 @@ def test_transparent_pixels_are_left_out(tmp_path: Path) -> None:
     assert np.array_equal(read_picture(path).valid, alpha == 255)
     assert read_picture(path).left_out == 2
     assert read_picture(path, Reading(alpha="data")).left_out == 0
-    with pytest.raises(InputError, match="2 pixels of the picture hold no data, and a whole one is needed"):
+    with pytest.raises(InputError, match="2 pixels of the picture without data, and a whole one is needed"):
         read_rgb(path)
 
 

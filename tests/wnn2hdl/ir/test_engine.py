@@ -47,12 +47,18 @@ def test_the_engine_chosen_is_fast_enough_and_a_slower_one_is_smaller() -> None:
 
 
 @pytest.mark.parametrize(
-    ("template", "segment"), [((4, 4), (4, 9)), ((1, 4), (9, 9)), ((4, 4), (9, 4096)), ((9, 9), (4, 4))]
+    ("template", "segment", "fault"),
+    [
+        ((4, 4), (4, 9), "4x4 does not move in a segment of 4x9"),
+        ((9, 9), (4, 4), "9x9 does not move in a segment of 4x4"),
+        ((1, 4), (9, 9), "at least 2x2 pixels, not 1x4"),
+        ((4, 4), (9, 4096), "at most 2048x2048 pixels, not 9x4096"),
+    ],
 )
 def test_sizes_that_leave_nothing_to_search_are_refused(
-    template: tuple[int, int], segment: tuple[int, int]
+    template: tuple[int, int], segment: tuple[int, int], fault: str
 ) -> None:
-    with pytest.raises(ValueError, match="does not move"):
+    with pytest.raises(ValueError, match=fault):
         EngineFormat.fast_enough(template, segment, 10**9)
 
 

@@ -48,6 +48,12 @@ def test_a_clock_that_is_too_fast_for_one_lut_is_refused() -> None:
     assert for_clock(chain(3), 803).latencies["chain"] == 3
 
 
+def test_clocks_of_any_speed_have_an_answer() -> None:
+    with pytest.raises(InputError, match="no number of stages meets the clock"):
+        for_clock(chain(3), 1e9)
+    assert for_clock(chain(3), 5e-324).latencies["chain"] == 1
+
+
 @settings(max_examples=25, deadline=None)
 @given(circuits(COMBINATIONAL), st.integers(1, 4))
 def test_the_clock_that_some_stages_allow_is_met_by_no_more(circuit: Circuit, stages: int) -> None:

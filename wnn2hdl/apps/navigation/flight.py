@@ -149,7 +149,8 @@ def run_flight(
         raise InputError(
             "no frame shows anything of the map",
             value=recording.map_name,
-            hint="check the positions, the heights and the camera",
+            hint="check the positions, the heights and the camera"
+            + ("" if engine is None else ", or give a smaller --template and --segment"),
         )
     searched = tuple(
         SearchResult(kind, half, _rows(grid, recording.poses, found, methods, acceptances, kind, half))
