@@ -286,5 +286,7 @@ def feature_table(
         )
     if not np.isfinite(numbers).all():
         raise InputError("a feature is not a finite number", hint="leave its row out")
+    if any(label is None or label != label for label in labels):  # NaN alone differs from itself
+        raise InputError("a label is missing", hint="leave its row out")
     columns = tuple(f"feature {number}" for number in range(numbers.shape[1]))
     return FeatureTable(columns, numbers, tuple(map(str, labels)))

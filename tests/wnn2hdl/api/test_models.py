@@ -134,6 +134,8 @@ def test_choices_that_contradict_each_other_are_refused(
         ([[1, 2], [3, 4]], ["a"], "with a label each"),
         ([1, 2], ["a", "b"], "features are numbers"),
         ([[1, 2], [3, np.nan]], ["a", "b"], "not a finite number"),
+        ([[1], [2], [3]], ["a", "b", None], "a label is missing"),
+        ([[1], [2], [3]], [0.0, 1.0, np.nan], "a label is missing"),
     ],
 )
 def test_rows_that_do_not_fit_are_refused(features: object, labels: list[str], fault: str) -> None:

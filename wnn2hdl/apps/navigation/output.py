@@ -285,7 +285,7 @@ def _without_fix(search: SearchResult) -> str:
     if not silent:
         return ""
     return (
-        f"No fix is given by {', '.join(silent)}: judging by the calibration's frames, none of their "
+        f"No fix is given by {'; '.join(silent)}: judging by the calibration's frames, none of their "
         "positions is sure enough. Calibrating on more frames, ten or more, often helps."
     )
 
