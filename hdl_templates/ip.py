@@ -1,7 +1,7 @@
 # amaranth: UnusedElaboratable=no
 """Cores as IPs: with registers behind AXI4-Lite in the place of the ports that a processor serves."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 
 from amaranth.hdl import Module, Signal
 from amaranth.lib.wiring import Out
@@ -17,7 +17,46 @@ from wnn2hdl.ir.registers import DATA_BITS, RESULT, RegisterMap
 from wnn2hdl.ir.video import MAX_WIDTH
 
 
-class VideoIp(Part):
+class _Ip(Part):
+    """A core with registers: what is alike in all of them."""
+
+    clocked = True
+    clock = "aclk"
+    module_name = "ip"
+
+    def __init__(
+        self, core: Part, registers: RegisterMap, *, streams: Sequence[str], served: Collection[str]
+    ) -> None:
+        """Take the ports of a core without those that its registers serve, and add those of the bus."""
+        self.registers = registers
+        self._summary, self._streams = core.summary, streams
+        kept = {name: member for name, member in core.signature.members.items() if name not in served}
+        super().__init__({**kept, **bus_members(), "irq": Out(1)})
+
+    @property
+    def summary(self) -> str:
+        """See `Part.summary`."""
+        return f"{self._summary} Registers behind AXI4-Lite."
+
+    @property
+    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
+        """See `Part.port_attributes`."""
+        return vivado_interfaces(self, streams=self._streams, bus=BUS)
+
+    def _place(self, m: Module, platform: object, control: AxiLiteRegisters, core: Part, watch: Part) -> None:
+        """Place a core, its registers, and what watches it; all but the registers are reset by these, too."""
+        for name, part in (("core", core), ("control", control), ("watch", watch)):
+            place(m, name, part, platform)
+        pass_on(m, self, control, ["aresetn", *ports_of(self, BUS), "irq"])
+        resetn = Signal()
+        m.d.comb += [
+            resetn.eq(self.aresetn & ~control.control_reset),
+            core.aresetn.eq(resetn),
+            watch.aresetn.eq(resetn),
+        ]
+
+
+class VideoIp(_Ip):
     """A video core with registers.
 
     Args:
@@ -31,24 +70,9 @@ class VideoIp(Part):
         irq: Out, the interrupt, as long as an event that is enabled was not cleared.
     """
 
-    clocked = True
-    clock = "aclk"
-    module_name = "ip"
-
     def __init__(self, *, core: VideoCore, registers: RegisterMap) -> None:
-        self.core, self.registers = core, registers
-        kept = {name: member for name, member in core.signature.members.items() if name != "height"}
-        super().__init__({**kept, **bus_members(), "irq": Out(1)})
-
-    @property
-    def summary(self) -> str:
-        """See `Part.summary`."""
-        return f"{self.core.summary} Registers behind AXI4-Lite."
-
-    @property
-    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
-        """See `Part.port_attributes`."""
-        return vivado_interfaces(self, streams=self.core.streams, bus=BUS)
+        self.core = core
+        super().__init__(core, registers, streams=core.streams, served=("height",))
 
     def elaborate(self, platform: object) -> Module:
         """The core, its registers, and what watches its frames."""
@@ -56,7 +80,7 @@ class VideoIp(Part):
         core, control = self.core, AxiLiteRegisters(registers=self.registers)
         longest = core.places if core.has_lines else core.video.beats_of(MAX_WIDTH)
         frames = FrameControl(pixels=core.video.pixels_per_clock, longest=longest)
-        _place(m, self, platform, control, core, frames)
+        self._place(m, platform, control, core, frames)
         if core.has_lines:
             m.d.comb += core.height.eq(frames.frame_height)
         pass_on(m, self, core, (f"s_axis_video_{name}" for name in ("tdata", "tuser", "tlast")))
@@ -85,7 +109,7 @@ class VideoIp(Part):
         return m
 
 
-class EngineIp(Part):
+class EngineIp(_Ip):
     """A match engine with registers, from which results are read.
 
     Args:
@@ -99,32 +123,21 @@ class EngineIp(Part):
         irq: Out, the interrupt, as long as an event that is enabled was not cleared.
     """
 
-    clocked = True
-    clock = "aclk"
-    module_name = "ip"
-
     def __init__(self, *, core: MatchEngine, registers: RegisterMap) -> None:
-        self.core, self.registers = core, registers
-        results = ports_of(core, "m_axis_result")
-        kept = {name: member for name, member in core.signature.members.items() if name not in results}
-        super().__init__({**kept, **bus_members(), "irq": Out(1)})
-
-    @property
-    def summary(self) -> str:
-        """See `Part.summary`."""
-        return f"{self.core.summary} Registers behind AXI4-Lite."
-
-    @property
-    def port_attributes(self) -> Mapping[str, Mapping[str, str]]:
-        """See `Part.port_attributes`."""
-        return vivado_interfaces(self, streams=("s_axis_segment", "s_axis_template"), bus=BUS)
+        self.core = core
+        super().__init__(
+            core,
+            registers,
+            streams=("s_axis_segment", "s_axis_template"),
+            served=ports_of(core, "m_axis_result"),
+        )
 
     def elaborate(self, platform: object) -> Module:
         """The engine, its registers, and what watches its matches."""
         m = Module()
         core, control = self.core, AxiLiteRegisters(registers=self.registers)
         watch = MatchControl(engine=core.engine)
-        _place(m, self, platform, control, core, watch)
+        self._place(m, platform, control, core, watch)
         pass_on(m, self, core, ports_of(core, "s_axis_segment"))
         pass_on(m, self, core, (f"s_axis_template_{name}" for name in ("tdata", "tuser", "tlast")))
         m.d.comb += [
@@ -155,16 +168,3 @@ class EngineIp(Part):
                 bits = core.m_axis_result_tdata[low : low + field.width]
                 m.d.comb += getattr(control, register.signal(field)).eq(bits)
         return m
-
-
-def _place(m: Module, ip: Part, platform: object, control: AxiLiteRegisters, core: Part, watch: Part) -> None:
-    """Place a core, its registers, and what watches it; all but the registers are reset by these, too."""
-    for name, part in (("core", core), ("control", control), ("watch", watch)):
-        place(m, name, part, platform)
-    pass_on(m, ip, control, ["aresetn", *ports_of(ip, BUS), "irq"])
-    resetn = Signal()
-    m.d.comb += [
-        resetn.eq(ip.aresetn & ~control.control_reset),
-        core.aresetn.eq(resetn),
-        watch.aresetn.eq(resetn),
-    ]
