@@ -6,6 +6,8 @@ import numpy as np
 
 from wnn2hdl.emit.register_bench import (
     CLOCKED,
+    PAUSES,
+    RESET,
     SAMPLED,
     bus_ports,
     bus_signals,
@@ -13,6 +15,7 @@ from wnn2hdl.emit.register_bench import (
     filled,
     identified,
     read,
+    used,
     write,
 )
 from wnn2hdl.ir.engine import RESULT_WORDS, EngineFormat, Round, picture_words
@@ -80,6 +83,10 @@ def engine_testbench(
     result = [*(read(registers, name, 0) for name in RESULT), write(registers, "interrupt", 1)]
     after = [read(registers, "results", count), read(registers, "malformed", 0)]
     script = [*before, *result, *after]
+    enabling = (
+        "            // No template begins before it is enabled.\n"
+        f"            if (access == {len(before) - 1} && pixel != 0) refuse;\n"
+    )
     return f"""\
 // Checks {name} in {count} matches; run it in this folder,
 // with Icarus:    iverilog -o {name}_tb {files} && vvp -N {name}_tb
@@ -111,11 +118,7 @@ module {name}_tb;
     // A cycle.
     task step;
         begin
-            // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
-            random = random ^ (random << 13);
-            random = random ^ (random >> 17);
-            random = random ^ (random << 5);
-            if (!s_tvalid && match < {count} && word < {words} && random[1:0] != 2'b00) begin
+{PAUSES}            if (!s_tvalid && match < {count} && word < {words} && random[1:0] != 2'b00) begin
                 s_tvalid = 1'b1;
                 s_tdata = vectors[segment * {words} + word];
                 s_tlast = word == {words - 1};
@@ -177,18 +180,7 @@ module {name}_tb;
         now = 0;
         ended = 0;
         wrong = 1'b0;
-        repeat (4) begin
-            #1 aclk = 1'b1;
-            #1 aclk = 1'b0;
-        end
-        aresetn = 1'b1;
-        for (access = 0; access < {len(before)}; access = access + 1) begin
-            // No template begins before it is enabled.
-            if (access == {len(before) - 1} && pixel != 0) refuse;
-            {{writes, answer, address, value}} = script[access];
-            use_register;
-        end
-        while (received < {count} && !wrong && !denied) begin
+{RESET}{used(0, len(before), enabling)}        while (received < {count} && !wrong && !denied) begin
             step;
             if (irq) begin
                 for (i = 0; i < {len(result)}; i = i + 1) begin
@@ -199,11 +191,7 @@ module {name}_tb;
                 received = received + 1;
             end
         end
-        for (access = {len(before) + len(result)}; access < {len(script)}; access = access + 1) begin
-            {{writes, answer, address, value}} = script[access];
-            use_register;
-        end
-        if (wrong) begin
+{used(len(before) + len(result), len(script))}        if (wrong) begin
             $display("FAIL: {name}, match %0d of {count}", received);
             $display("  %0d cycles, expected {cycles + 1}", now - ended);
         end

@@ -97,6 +97,24 @@ CLOCKED = """\
 """Statements of ``step`` behind the edge of the clock."""
 
 
+PAUSES = """\
+            // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
+            random = random ^ (random << 13);
+            random = random ^ (random >> 17);
+            random = random ^ (random << 5);
+"""
+"""Statements of ``step`` that draw the bits by which streams and bus pause."""
+
+RESET = """\
+        repeat (4) begin
+            #1 aclk = 1'b1;
+            #1 aclk = 1'b0;
+        end
+        aresetn = 1'b1;
+"""
+"""Statements that reset the core."""
+
+
 def bus_signals(count: int) -> str:
     """Declarations of the bus, of ``irq``, of so many accesses, and of ``denied``: whether one was wrong."""
     return _SIGNALS.format(last=count - 1)
@@ -110,6 +128,16 @@ def bus_tasks(name: str) -> str:
 def filled(script: Sequence[Access]) -> str:
     """Statements that fill the memory of accesses."""
     return "".join(access.statement(number) for number, access in enumerate(script))
+
+
+def used(first: int, last: int, before_each: str = "") -> str:
+    """Statements that make the accesses from one to before another, with statements before each."""
+    return f"""\
+        for (access = {first}; access < {last}; access = access + 1) begin
+{before_each}            {{writes, answer, address, value}} = script[access];
+            use_register;
+        end
+"""
 
 
 def bus_ports() -> list[str]:

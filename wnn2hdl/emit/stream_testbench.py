@@ -5,6 +5,8 @@ from itertools import chain
 
 from wnn2hdl.emit.register_bench import (
     CLOCKED,
+    PAUSES,
+    RESET,
     SAMPLED,
     bus_ports,
     bus_signals,
@@ -12,6 +14,7 @@ from wnn2hdl.emit.register_bench import (
     filled,
     identified,
     read,
+    used,
     write,
 )
 from wnn2hdl.ir.registers import RegisterMap
@@ -112,6 +115,11 @@ def stream_testbench(
     streams = ",\n".join(
         f"        .{side}_axis_video_{signal}({side}_{signal})" for side in "sm" for signal in _SIGNALS
     )
+    enabling = (
+        "            // No frame begins before it is enabled.\n"
+        f"            if (access == {len(before) - 1} && sent != 0) refuse;\n"
+    )
+    interrupted = "            if (irq !== 1'b1) refuse;\n"
     declared, drawn, checked, waits = "", "", "", f"received < {count}"
     if video.square is not None:
         streams += "".join(f",\n        .m_axis_squares_{signal}(q_{signal})" for signal in _SIGNALS)
@@ -151,11 +159,7 @@ module {name}_tb;
     // A cycle.
     task step;
         begin
-            // Xorshift: pauses of no pattern. A beat that is offered stays until it is taken.
-            random = random ^ (random << 13);
-            random = random ^ (random >> 17);
-            random = random ^ (random << 5);
-            s_tvalid = s_tvalid || (sent < {count} && random[1:0] != 2'b00);
+{PAUSES}            s_tvalid = s_tvalid || (sent < {count} && random[1:0] != 2'b00);
             m_tready = random[9:8] != 2'b00;
 {drawn}            sending = s_tvalid ? vectors[sent] : {{{word}{{1'bx}}}};
             expected = vectors[received];
@@ -188,18 +192,7 @@ module {name}_tb;
 {filled(script)}        sent = 0;
         received = 0;
         idle = 0;
-        repeat (4) begin
-            #1 aclk = 1'b1;
-            #1 aclk = 1'b0;
-        end
-        aresetn = 1'b1;
-        for (access = 0; access < {len(before)}; access = access + 1) begin
-            // No frame begins before it is enabled.
-            if (access == {len(before) - 1} && sent != 0) refuse;
-            {{writes, answer, address, value}} = script[access];
-            use_register;
-        end
-        while (({waits}) && idle < {_PATIENCE} && !denied) begin
+{RESET}{used(0, len(before), enabling)}        while (({waits}) && idle < {_PATIENCE} && !denied) begin
             step;
             // The version, now and then.
             {{writes, answer, address, value}} = script[0];
@@ -211,12 +204,7 @@ module {name}_tb;
             $finish;
         end
         repeat (4) step;
-        for (access = {len(before)}; access < {len(script)}; access = access + 1) begin
-            if (irq !== 1'b1) refuse;
-            {{writes, answer, address, value}} = script[access];
-            use_register;
-        end
-        if (irq !== 1'b0) refuse;
+{used(len(before), len(script), interrupted)}        if (irq !== 1'b0) refuse;
         if (denied) begin
             $stop;
             $finish;
