@@ -25,7 +25,7 @@ from wnn2hdl.ir.pixels import bits_to_pixels, pixel_bits, pixels_of_codes
 from wnn2hdl.ir.relational import occurring
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
-from wnn2hdl.verify.edge import EDGE_MASK, Edges, care_module, window_care
+from wnn2hdl.verify.edge import EDGE_MASK, Edges, window_care, window_care_module
 from wnn2hdl.verify.reference import class_bits, lookup, module, pixel_code, plain_sum, winner
 from wnn2hdl.verify.specification import Claim, Samples, Specification, flags_of
 
@@ -204,7 +204,7 @@ def _care(block: Block) -> str:
     red, green, blue = block.cared_pixel()
     pixel_lines.append(f"  assign rgb = {pixel_cared} ? free : {{8'd{red}, 8'd{green}, 8'd{blue}}};")
     held = module("proof__care_pixel", {"free": PIXEL_BITS}, {"rgb": PIXEL_BITS}, pixel_lines)
-    return held + care_module(block.window_care)
+    return held + window_care_module(block.window_care)
 
 
 def _pixel(block: Block) -> str:

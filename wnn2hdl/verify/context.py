@@ -16,8 +16,8 @@ from wnn2hdl.ir.pixels import bits_to_pixels
 from wnn2hdl.ir.relational import pixel_codes
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
-from wnn2hdl.verify.edge import Edges, care_module, window_care
-from wnn2hdl.verify.reference import class_bits, lookup, module, pixel_code, winner
+from wnn2hdl.verify.edge import Edges, window_care, window_care_module
+from wnn2hdl.verify.reference import care_module, class_bits, module, pixel_code, winner
 from wnn2hdl.verify.specification import Claim, Mask, Samples, Specification, flags_of
 
 PLANES, CONTEXT = "planes", "context"
@@ -99,19 +99,17 @@ def context_specification(
     )
     plane_lines, bits = pixel_code(encoder.planes, "rgb")
     plane_lines.append(f"  assign plane_bits = {{{', '.join(reversed(bits))}}};")
-    care_lines, cared = lookup("n", flags, [f"code[{i}]" for i in range(encoder.width)])
     reference = [
         module(planes.module, planes.inputs, planes.outputs, plane_lines),
         module(context.module, context.inputs, context.outputs, [_code(encoder), *winner(model)]),
     ]
-    lines = [_code(encoder), *care_lines, f"  assign cared = {cared};"]
-    care_text = [module(_CARE, context.inputs, {"cared": 1}, lines)]
+    care_text = [care_module(_CARE, context.inputs, "code", flags, [_code(encoder)])]
     claims = [planes, context]
     if edges is not None:
         edge = Edges(edges, window_care(care))
         claims.append(edge.claim())
         reference.append(edge.reference())
-        care_text.append(care_module(edge.care))
+        care_text.append(window_care_module(edge.care))
     return Specification({claim.part: claim for claim in claims}, "\n".join(reference), "\n".join(care_text))
 
 

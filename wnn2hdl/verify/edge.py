@@ -10,7 +10,7 @@ from wnn2hdl.ir import WINDOW_BITS, EdgeFilter, bits_to_codes
 from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
-from wnn2hdl.verify.reference import lookup, module
+from wnn2hdl.verify.reference import care_module, lookup, module
 from wnn2hdl.verify.specification import Claim, Mask, Samples, flags_of
 
 PART = "edge"
@@ -66,8 +66,6 @@ class Edges:
         return module(REFERENCE, {"bits": WINDOW_BITS}, {"edge_bit": 1}, lines)
 
 
-def care_module(care: NDArray[np.bool_]) -> str:
+def window_care_module(care: NDArray[np.bool_]) -> str:
     """The module `CARE`, for cared-for windows bool ``[512]``."""
-    lines, cared = lookup("n", care, [f"bits[{i}]" for i in range(WINDOW_BITS)])
-    lines.append(f"  assign cared = {cared};")
-    return module(CARE, {"bits": WINDOW_BITS}, {"cared": 1}, lines)
+    return care_module(CARE, {"bits": WINDOW_BITS}, "bits", care)

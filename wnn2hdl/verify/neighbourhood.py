@@ -24,11 +24,13 @@ from wnn2hdl.ir.care import CareSet, Everything
 from wnn2hdl.ir.pixels import bits_to_pixels
 from wnn2hdl.ir.wires import Bits
 from wnn2hdl.verify import stimulus
-from wnn2hdl.verify.edge import Edges, care_module, window_care
-from wnn2hdl.verify.reference import class_bits, lookup, module, winner
+from wnn2hdl.verify.edge import Edges, window_care, window_care_module
+from wnn2hdl.verify.reference import care_module, class_bits, lookup, module, winner
 from wnn2hdl.verify.specification import Claim, Mask, Samples, Specification, flags_of
 
 PART, TAPS, DECISION = "neighbourhood", "taps", "decision"
+
+_CARE_WINDOW, _CARE_CODE = f"proof__care_{PART}", f"proof__care_{DECISION}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +94,7 @@ def neighbourhood_specification(
         neighbours.answers,
         lambda: stimulus.neighbourhood(encoder, flags),
         neighbours.cared,
-        masks={"class_bits": Mask("proof__care_neighbourhood", "window")},
+        masks={"class_bits": Mask(_CARE_WINDOW, "window")},
     )
     taps = Claim(
         TAPS,
@@ -110,7 +112,7 @@ def neighbourhood_specification(
         neighbours.classes,
         lambda: {"code": codes_to_bits(np.flatnonzero(flags), encoder.width)},
         lambda inputs: flags[bits_to_codes(inputs["code"])][:, np.newaxis],
-        masks={"class_bits": Mask("proof__care_decision", "code")},
+        masks={"class_bits": Mask(_CARE_CODE, "code")},
     )
     tap_lines, bits = _tap_bits(encoder.tables, "rgb", [0] * len(encoder.tables))
     reference = [
@@ -119,23 +121,16 @@ def neighbourhood_specification(
         module(decision.module, decision.inputs, claim.outputs, winner(model)),
     ]
     cared = [
-        _care(PART, claim.inputs, _window_code(encoder), flags),
-        _care(DECISION, decision.inputs, [], flags),
+        care_module(_CARE_WINDOW, claim.inputs, "code", flags, _window_code(encoder)),
+        care_module(_CARE_CODE, decision.inputs, "code", flags),
     ]
     claims = [claim, taps, decision]
     if edges is not None:
         edge = Edges(edges, window_care(care))
         claims.append(edge.claim())
         reference.append(edge.reference())
-        cared.append(care_module(edge.care))
+        cared.append(window_care_module(edge.care))
     return Specification({part.part: part for part in claims}, "\n".join(reference), "\n".join(cared))
-
-
-def _care(part: str, inputs: Mapping[str, int], code: list[str], flags: NDArray[np.bool_]) -> str:
-    """The module that says whether a ``code``, which the lines make, is cared for."""
-    width = (len(flags) - 1).bit_length()
-    lines, cared = lookup("n", flags, [f"code[{i}]" for i in range(width)])
-    return module(f"proof__care_{part}", inputs, {"cared": 1}, [*code, *lines, f"  assign cared = {cared};"])
 
 
 def _window_code(encoder: Neighbourhood) -> list[str]:

@@ -55,6 +55,23 @@ def lookup(prefix: str, contents: NDArray[np.bool_], address: Sequence[str]) -> 
     return lines, node(contents, len(address))
 
 
+def care_module(
+    name: str, inputs: Mapping[str, int], word: str, cared: NDArray[np.bool_], lines: Sequence[str] = ()
+) -> str:
+    """The module that says, by ``cared``, whether what it is given matters.
+
+    Args:
+        name: of the module.
+        inputs: its ports, widths in bits.
+        word: the port, or the wire that the lines make, of what is cared for.
+        cared: bool ``[2**width of the word]``.
+        lines: that make the wire.
+    """
+    width = (len(cared) - 1).bit_length()
+    tree, answer = lookup("n", cared, [f"{word}[{i}]" for i in range(width)])
+    return module(name, inputs, {"cared": 1}, [*lines, *tree, f"  assign cared = {answer};"])
+
+
 def pixel_code(names: Sequence[str], pixel: str) -> tuple[list[str], list[str]]:
     """Lines, and for each named bit of a pixel its expression, where ``pixel`` is a net of 24 bits.
 
