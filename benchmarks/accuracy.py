@@ -8,10 +8,8 @@ probability of 0.95. LUTs are those of the classifier trained on all images, as 
 not a circuit here and has none. The last rows look at a pixel's neighbours, too.
 """
 
-import argparse
 from collections.abc import Callable, Sequence
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +17,7 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
+from benchmarks.scenes import scene_parser
 from wnn2hdl.build.planning import CompileOptions, plan
 from wnn2hdl.dataset import CLASSES, ColourHistogram, Dataset, colour_histogram, folds, from_masks
 from wnn2hdl.encode import high_bits
@@ -31,7 +30,8 @@ from wnn2hdl.markdown import head, row
 from wnn2hdl.minimise import map_luts
 from wnn2hdl.training.bitselect import MOST_LUTS, SIZES, look_up_table, select_bits
 from wnn2hdl.training.budget import code_histogram, saturates, train_discriminators
-from wnn2hdl.training.crossval import FOLDS, Trainer, cross_validated
+from wnn2hdl.training.crossval import Trainer, cross_validated
+from wnn2hdl.training.folds import FOLDS
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 from wnn2hdl.training.promise import OTHERS, prediction_interval
 
@@ -43,11 +43,8 @@ RED = BitSelect(tuple(f"R{bit}" for bit in range(8)))
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("images", type=Path)
-    parser.add_argument("masks", type=Path)
+    parser = scene_parser(__doc__)
     parser.add_argument("--mappings", type=int, default=20)
-    parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
     dataset = from_masks(given.images, given.masks)
     images = [colour_histogram(image, 2) for image in dataset]

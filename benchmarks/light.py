@@ -7,14 +7,13 @@ out is judged with all its levels multiplied, rounded, and saturated at 255. A t
 fold's training pixels, taken as they are.
 """
 
-import argparse
 from collections.abc import Callable, Sequence
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.scenes import scene_parser
 from wnn2hdl.dataset import CLASSES, ColourHistogram, colour_histogram, from_masks
 from wnn2hdl.ir import Comparison, Relational, WisardModel
 from wnn2hdl.markdown import head, row
@@ -29,11 +28,7 @@ Trainer = Callable[[Sequence[ColourHistogram]], WisardModel]
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("images", type=Path)
-    parser.add_argument("masks", type=Path)
-    parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args()
+    given = scene_parser(__doc__).parse_args()
     images = [colour_histogram(image, len(CLASSES)) for image in from_masks(given.images, given.masks)]
     trainers: dict[str, Trainer] = {
         f"{name} + t": partial(threshold, shape) for name, shape in SHAPES.items()

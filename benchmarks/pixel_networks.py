@@ -9,16 +9,15 @@ the loss, from the verdicts of the reference that the search aims at. Of network
 of a bit it takes the one that agrees with these on most training pixels and maps to so many LUTs at most.
 """
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.scenes import scene_parser
 from wnn2hdl.dataset import CLASSES, ColourHistogram, colour_histogram, from_masks
 from wnn2hdl.ir import CHANNELS, LUT_INPUTS, BitSelect, Comparison, Relational, WisardModel, codes_to_bits
 from wnn2hdl.ir.relational import Weighted, pixel_codes
@@ -72,11 +71,7 @@ class Candidate:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("images", type=Path)
-    parser.add_argument("masks", type=Path)
-    parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args()
+    given = scene_parser(__doc__).parse_args()
     images = [colour_histogram(image, len(CLASSES)) for image in from_masks(given.images, given.masks)]
     networks = lru_cache(lambda chosen: candidates([images[i] for i in chosen], given.seed))
     columns = [*(f"x{exposure:g}" for exposure in EXPOSURES), "worst", "LUTs per pixel in the folds"]

@@ -11,10 +11,8 @@ With --squares it gives pixels and squares of the reference design instead: 20 x
 they are scored against the majority of each square of the mask, and against its pixels.
 """
 
-import argparse
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +34,7 @@ from benchmarks.rivals import (
     quadratic,
     ratios,
 )
+from benchmarks.scenes import scene_parser
 from wnn2hdl.dataset import CLASSES, Dataset, colour_histogram, folds, from_masks
 from wnn2hdl.encode import high_bits
 from wnn2hdl.evaluation.accuracy import Squares, evaluate, majority_labels
@@ -47,8 +46,9 @@ from wnn2hdl.markdown import head, row
 from wnn2hdl.training.bitselect import LUTS, select_bits
 from wnn2hdl.training.budget import WITHIN, pixel_luts
 from wnn2hdl.training.comparisons import draw_pixels, select_comparisons
-from wnn2hdl.training.crossval import EXPOSURES, FOLDS
+from wnn2hdl.training.crossval import EXPOSURES
 from wnn2hdl.training.discriminators import train
+from wnn2hdl.training.folds import FOLDS
 from wnn2hdl.training.neighbourhood import train_neighbourhood
 
 SIDE, SHARE = 20, 0.5
@@ -62,10 +62,7 @@ ModelTrainer = Callable[[Dataset], WisardModel]
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("images", type=Path)
-    parser.add_argument("masks", type=Path)
-    parser.add_argument("--seed", type=int, default=0)
+    parser = scene_parser(__doc__)
     parser.add_argument("--mappings", type=int, default=5)
     parser.add_argument("--pixels", type=int, default=5000)
     parser.add_argument("--squares", action="store_true")

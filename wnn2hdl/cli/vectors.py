@@ -17,7 +17,8 @@ from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.model import COMMAND
 from wnn2hdl.ir.models import SparseWisardModel
 from wnn2hdl.progress import Progress
-from wnn2hdl.training.tables import FOLDS, TableOptions, cross_validate_table, train_table
+from wnn2hdl.training.folds import FOLDS
+from wnn2hdl.training.tables import TableOptions, cross_validate_table, train_table
 
 MAPPINGS = ("shared", "per-class")
 

@@ -20,7 +20,8 @@ from wnn2hdl.minimise import map_luts
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import MOST_LUTS, look_up_table, select_bits
 from wnn2hdl.training.comparisons import select_comparisons
-from wnn2hdl.training.crossval import EXPOSURES, Trainer, cross_validate, fold_count, shares_right
+from wnn2hdl.training.crossval import EXPOSURES, Trainer, cross_validate, shares_right
+from wnn2hdl.training.folds import fold_count
 from wnn2hdl.training.promise import light_figures
 from wnn2hdl.wisard import choose_bleaching, draw_mapping, train_histogram
 
@@ -117,7 +118,7 @@ def train_under_budget(
         inside: list[Point] = []
 
         def choose(chosen: Sequence[int]) -> WisardModel:
-            progress("choosing in each fold", len(inside), fold_count(images))
+            progress("choosing in each fold", len(inside), fold_count(len(images)))
             points = search([images[i] for i in chosen], progress=_silent)
             inside.append(_best(points, luts_per_pixel))
             return inside[-1].model

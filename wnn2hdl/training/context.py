@@ -24,10 +24,11 @@ from wnn2hdl.ir.relational import Weighted
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import look_up_table
 from wnn2hdl.training.budget import LIGHT, NESTED
-from wnn2hdl.training.crossval import EXPOSURES, FOLDS, picture_shares_right
+from wnn2hdl.training.crossval import pictures_cross_validated
+from wnn2hdl.training.folds import fold_count
 from wnn2hdl.training.light import varied
 from wnn2hdl.training.promise import light_figures
-from wnn2hdl.wisard import require_every_class
+from wnn2hdl.wisard import require_every_class, require_two_classes
 
 RATIOS = ((1, 1), (5, 4), (4, 3), (3, 2), (7, 4), (2, 1))
 """Weights of two channels that are compared, either way round; more of them were chosen from less well."""
@@ -88,12 +89,7 @@ def train_context(dataset: Dataset, size: int, *, seed: int, progress: Progress)
         raise InputError(
             "there is no such context", value=size, hint=f"choose one of {', '.join(map(str, SIZES))}"
         )
-    if len(dataset.classes) != 2:
-        raise InputError(
-            "context separates two classes",
-            value=", ".join(dataset.classes),
-            hint="train discriminators for more, or merge classes",
-        )
+    require_two_classes(dataset.classes, "context")
     if len(dataset) < 3:
         raise InputError("context is chosen on three images at least", value=len(dataset), hint="give more")
     samples = [
@@ -104,16 +100,14 @@ def train_context(dataset: Dataset, size: int, *, seed: int, progress: Progress)
         dataset.classes, (any((image.labels == owner).any() for image in samples) for owner in (0, 1))
     )
     model = _choose(samples, size, dataset.classes, seed)
-    folds = min(FOLDS, len(dataset))
-    shares = np.zeros((len(dataset), len(EXPOSURES)))
     inside = []
-    for fold in reported(range(folds), "choosing in each fold", folds, progress):
-        chosen = _choose([s for i, s in enumerate(samples) if i % folds != fold], size, dataset.classes, seed)
+
+    def choose(others: Sequence[int]) -> WisardModel:
+        chosen = _choose([samples[i] for i in others], size, dataset.classes, seed)
         inside.append(" ".join(_encoder(chosen).planes))
-        for i in range(fold, len(dataset), folds):
-            shares[i] = picture_shares_right(chosen, dataset.load(dataset.names[i]))
-    # An image of which nothing can be judged says nothing.
-    judged = shares[~np.isnan(shares).any(axis=1)]
+        return chosen
+
+    judged = pictures_cross_validated(dataset, choose, "choosing in each fold", progress)
     figures: dict[str, Any] = {NESTED: inside, LIGHT: light_figures(judged), "images": list(dataset.names)}
     return replace(model, training={**model.training, **figures})
 
@@ -209,7 +203,7 @@ def _right_outside(counted: NDArray[np.int64]) -> float:
     Args:
         counted: pixels by image, class and code, ``[images, 2, 2**width]``; one image is its own judge.
     """
-    folds = min(FOLDS, len(counted))
+    folds = fold_count(len(counted))
     right = 0
     for fold in range(folds):
         outside = np.arange(len(counted)) % folds == fold

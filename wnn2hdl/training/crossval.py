@@ -5,12 +5,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from wnn2hdl.dataset import ColourHistogram, LabelledImage
+from wnn2hdl.dataset import ColourHistogram, Dataset, LabelledImage
 from wnn2hdl.errors import InputError
 from wnn2hdl.images import exposed
 from wnn2hdl.ir import WisardModel, picture_encoder, pixel_encoder
-
-FOLDS = 5
+from wnn2hdl.progress import Progress, reported
+from wnn2hdl.training.folds import training_sets
 
 STRIP = 512
 """Rows of a picture that are classified together."""
@@ -32,11 +32,6 @@ def cross_validate(images: Sequence[ColourHistogram], train: Trainer) -> float:
     return float(right / sum(int(image.counts.sum()) for image in images))
 
 
-def fold_count(images: Sequence[ColourHistogram]) -> int:
-    """How many folds cross-validation makes of these images."""
-    return min(FOLDS, len(images))
-
-
 def shares_right(images: Sequence[ColourHistogram], train: Trainer) -> NDArray[np.float64]:
     """Share of each image's pixels that are right in each light, by a model that has not seen the image.
 
@@ -54,8 +49,7 @@ def cross_validated(
 ) -> NDArray[np.int64]:
     """Pixels that are right when each image is classified, in each light, by a model that has not seen it.
 
-    Image ``i`` is tested in fold ``i % 5``, as `wnn2hdl.dataset.folds` splits sorted names; fewer images
-    than that are left out one by one.
+    The folds are those of `wnn2hdl.training.folds.training_sets`.
 
     Args:
         images: the colours of each image.
@@ -70,11 +64,11 @@ def cross_validated(
     """
     if len(images) < 2:
         raise InputError("cross-validation by image needs two images", value=len(images), hint="give more")
-    folds = fold_count(images)
+    folds = training_sets(len(images))
     right = np.zeros((len(images), len(exposures)), dtype=np.int64)
-    for fold in range(folds):
-        model = train([i for i in range(len(images)) if i % folds != fold])
-        for i in range(fold, len(images), folds):
+    for fold, others in enumerate(folds):
+        model = train(others)
+        for i in range(fold, len(images), len(folds)):
             right[i] = [pixels_right(model, images[i], exposure) for exposure in exposures]
     return right
 
@@ -84,6 +78,29 @@ def pixels_right(model: WisardModel, image: ColourHistogram, exposure: float = 1
     codes = pixel_encoder(model).codes(exposed(image.pixels, exposure))
     answers = model.evaluate_all_codes()[codes]
     return int(image.counts[answers, np.arange(len(answers))].sum())
+
+
+def pictures_cross_validated(
+    dataset: Dataset, train: Trainer, step: str, progress: Progress
+) -> NDArray[np.float64]:
+    """Share of each image's pixels that a model which looks around, and has not seen it, has right.
+
+    Args:
+        dataset: whole images; one is in memory at a time. Folds are those of `cross_validated`.
+        train: called once per fold.
+        step: what the progress of the folds is called.
+        progress: called with each fold.
+
+    Returns:
+        float64 ``[judged, exposures]``; an image of which no pixel can be judged says nothing.
+    """
+    folds = training_sets(len(dataset))
+    shares = np.zeros((len(dataset), len(EXPOSURES)))
+    for fold, others in enumerate(reported(folds, step, len(folds), progress)):
+        model = train(others)
+        for i in range(fold, len(dataset), len(folds)):
+            shares[i] = picture_shares_right(model, dataset.load(dataset.names[i]))
+    return np.asarray(shares[~np.isnan(shares).any(axis=1)])
 
 
 def picture_shares_right(model: WisardModel, image: LabelledImage) -> NDArray[np.float64]:

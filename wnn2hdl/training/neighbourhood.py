@@ -13,7 +13,8 @@ from wnn2hdl.ir import WisardModel
 from wnn2hdl.progress import Progress, reported
 from wnn2hdl.training.bitselect import LEAST_SHARE, LUTS, main_drift, select_neighbourhood
 from wnn2hdl.training.budget import LIGHT
-from wnn2hdl.training.crossval import EXPOSURES, FOLDS, picture_shares_right
+from wnn2hdl.training.crossval import EXPOSURES, pictures_cross_validated
+from wnn2hdl.training.folds import training_sets
 from wnn2hdl.training.promise import light_figures
 
 WINDOWS = 8000
@@ -98,15 +99,14 @@ def _shares_right(
     Returns:
         float64 ``[judged, exposures]``; none are judged if a fold has no classifier.
     """
-    folds = min(FOLDS, len(images))
-    outside = [[image for i, image in enumerate(images) if i % folds != fold] for fold in range(folds)]
-    shares = np.full((len(images), len(EXPOSURES)), np.nan)
-    if all({*np.concatenate([[], *(image.labels for image in others)])} == {0, 1} for others in outside):
-        for fold, others in enumerate(reported(outside, "cross-validating", folds, progress)):
-            model = _select(others, dataset.classes, seed, _silent)
-            for i in range(fold, len(images), folds):
-                shares[i] = picture_shares_right(model, dataset.load(dataset.names[i]))
-    return np.asarray(shares[~np.isnan(shares).any(axis=1)])
+    shown = [{*np.unique(image.labels).tolist()} for image in images]
+    if any(set().union(*(shown[i] for i in others)) != {0, 1} for others in training_sets(len(images))):
+        return np.zeros((0, len(EXPOSURES)))
+
+    def select(others: Sequence[int]) -> WisardModel:
+        return _select([images[i] for i in others], dataset.classes, seed, _silent)
+
+    return pictures_cross_validated(dataset, select, "cross-validating", progress)
 
 
 def _silent(done: int, total: int) -> None:

@@ -14,10 +14,9 @@ from wnn2hdl.ir import Thermometer, WisardModel
 from wnn2hdl.ir.fixed_point import FixedPoint
 from wnn2hdl.ir.models import SparseWisardModel
 from wnn2hdl.progress import Progress
+from wnn2hdl.training.folds import dealt, fold_count
 from wnn2hdl.wisard import WisardClassifier, draw_mapping
 from wnn2hdl.wisard.sparse import train_sparse
-
-FOLDS = 5
 
 DENSE_COUNTS = 1 << 22
 """Counts of all discriminators together up to which RAMs hold every address: 32 MiB."""
@@ -77,8 +76,8 @@ def cross_validate_table(
 ) -> NDArray[np.int64]:
     """Rows by true class and answer when a model answers that has not seen them.
 
-    For each seed the rows of every class are shuffled and dealt out to `FOLDS` folds in turn; thermometer,
-    mapping, counts and bleaching threshold of a fold come from the other folds alone.
+    For each seed the rows are `dealt` out to folds anew; thermometer, mapping, counts and bleaching threshold
+    of a fold come from the other folds alone.
 
     Args:
         table: the samples.
@@ -94,14 +93,12 @@ def cross_validate_table(
     """
     classes = tuple(sorted(set(table.labels)))
     owners = np.searchsorted(classes, table.labels)
-    folds = min(FOLDS, len(owners))
+    folds = fold_count(len(owners))
     if folds < 2 or len(classes) < 2:
         raise InputError("cross-validation needs two rows of two classes", hint="give more rows")
     confusion = np.zeros((len(seeds), len(classes), len(classes)), dtype=np.int64)
     for position, seed in enumerate(seeds):
-        shuffled = np.lexsort((np.random.default_rng(seed).random(len(owners)), owners))
-        fold_of = np.empty(len(owners), dtype=np.int64)
-        fold_of[shuffled] = np.arange(len(owners)) % folds
+        fold_of = dealt(owners, folds, seed)
         for fold in range(folds):
             progress("cross-validating", position * folds + fold, len(seeds) * folds)
             test = fold_of == fold

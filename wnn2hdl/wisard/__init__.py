@@ -4,7 +4,12 @@ from typing import TYPE_CHECKING, Any
 
 from wnn2hdl.wisard.bleaching import choose_bleaching
 from wnn2hdl.wisard.mapping import draw_mapping
-from wnn2hdl.wisard.pixels import PixelClassifier, require_every_class, train_histogram
+from wnn2hdl.wisard.pixels import (
+    PixelClassifier,
+    require_every_class,
+    require_two_classes,
+    train_histogram,
+)
 
 if TYPE_CHECKING:
     from wnn2hdl.wisard.classifier import WisardClassifier
@@ -15,6 +20,7 @@ __all__ = [
     "choose_bleaching",
     "draw_mapping",
     "require_every_class",
+    "require_two_classes",
     "train_histogram",
 ]
 

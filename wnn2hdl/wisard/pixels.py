@@ -59,6 +59,16 @@ def require_every_class(classes: Sequence[str], seen: Iterable[bool | np.bool_])
             )
 
 
+def require_two_classes(classes: Sequence[str], what: str) -> None:
+    """Raise InputError unless there are two classes, which is what can be separated by ``what``."""
+    if len(classes) != 2:
+        raise InputError(
+            f"{what} separates two classes",
+            value=", ".join(classes),
+            hint="train discriminators for more, or merge classes",
+        )
+
+
 class PixelClassifier:
     """A pixel model as the table of all its answers.
 

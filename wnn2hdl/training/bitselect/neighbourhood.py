@@ -20,7 +20,7 @@ from wnn2hdl.training.bitselect.drift import WIDTH
 from wnn2hdl.training.bitselect.mass import CUBE_SHARE, POOL, WHOLE
 from wnn2hdl.training.bitselect.reference import fit_window_reference
 from wnn2hdl.training.bitselect.select import look_up_table
-from wnn2hdl.wisard import require_every_class
+from wnn2hdl.wisard import require_every_class, require_two_classes
 
 SIZES = (3, 5)
 
@@ -112,12 +112,7 @@ def select_neighbourhood(
 
 
 def _check(windows: NDArray[np.uint8], labels: NDArray[np.uint8], classes: tuple[str, ...]) -> None:
-    if len(classes) != 2:
-        raise InputError(
-            "a neighbourhood separates two classes",
-            value=", ".join(classes),
-            hint="train discriminators for more, or merge classes",
-        )
+    require_two_classes(classes, "a neighbourhood")
     if windows.shape[1] not in SIZES:
         raise InputError(
             "a neighbourhood has 3x3 or 5x5 pixels", value=windows.shape[1], hint="ask for 3 or 5"

@@ -12,7 +12,7 @@ from wnn2hdl.training.bitselect.cascade import Cascade, find_cascade
 from wnn2hdl.training.bitselect.drift import LEAST_SHARE, Colours, blurred, main_drift, merged, unpacked
 from wnn2hdl.training.bitselect.mass import POOL, signed_mass
 from wnn2hdl.training.bitselect.reference import fit_reference
-from wnn2hdl.wisard import require_every_class
+from wnn2hdl.wisard import require_every_class, require_two_classes
 
 MOST_LUTS = 3
 
@@ -53,12 +53,7 @@ def select_bits(
     Raises:
         InputError: not two classes, another number of LUTs, or a class without pixels.
     """
-    if len(classes) != 2:
-        raise InputError(
-            "bit selection separates two classes",
-            value=", ".join(classes),
-            hint="train discriminators for more, or merge classes",
-        )
+    require_two_classes(classes, "bit selection")
     if not 1 <= luts <= MOST_LUTS:
         raise InputError(
             "bit selection makes classifiers of 1 to 3 LUTs per pixel",

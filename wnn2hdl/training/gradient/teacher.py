@@ -20,6 +20,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
 from wnn2hdl.ir.fixed_point import FixedPoint
+from wnn2hdl.training.folds import FOLDS, dealt
 
 FEW_SAMPLES = 5000
 """Up to so many samples a teacher is worth its time."""
@@ -27,7 +28,6 @@ FEW_SAMPLES = 5000
 MADE_UP = 20_000
 """Rows that are made up for so few."""
 
-FOLDS = 5
 NEIGHBOURS = 10
 JITTER = 0.1
 """Deviation of the noise on rows that are made up, in units of each feature's."""
@@ -111,9 +111,7 @@ def _cross_validated(
     make: Callable[[], Any], features: NDArray[np.float64], labels: NDArray[np.int64], seed: int
 ) -> float:
     """Share right of the samples of each fold when trained on the others; 0 if it cannot be trained."""
-    order = np.lexsort((np.random.default_rng(seed).random(len(labels)), labels))
-    fold_of = np.empty(len(labels), dtype=np.int64)
-    fold_of[order] = np.arange(len(labels)) % FOLDS
+    fold_of = dealt(labels, FOLDS, seed)
     right = 0
     for fold in range(FOLDS):
         test = fold_of == fold
