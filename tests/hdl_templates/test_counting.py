@@ -16,6 +16,7 @@ from hdl_templates.video import VideoCore
 from tests.hdl_templates.test_video import (
     PATTERNS,
     Beat,
+    Pixel,
     Window,
     broken_off,
     delayed,
@@ -52,21 +53,6 @@ WEIGHTS = 5
 """By how much the class grows with each: own bits, then counts, modulo 128."""
 
 
-class Found(Part):
-    """`BITS` of a pixel, ``latency`` cycles later."""
-
-    module_name = "found"
-
-    def __init__(self, latency: int) -> None:
-        self.latency = latency
-        super().__init__({"rgb": In(24), "plane_bits": Out(BITS)})
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        m.d.comb += self.plane_bits.eq(delayed(m, self.rgb[24 - BITS :], self.latency))
-        return m
-
-
 class Sum(Part):
     """The own bits and the counts, the first once, the next `WEIGHTS` times, and so on, as a class."""
 
@@ -93,7 +79,7 @@ def core(shape: Shape, answer: Answer = "class", *, latency: int = 0) -> VideoCo
     video = VideoFormat(max_width=WIDTH, answer=answer)
     return VideoCore(
         video=video,
-        pixels=[Found(latency)],
+        pixels=[Pixel(BITS, latency, "plane_bits")],
         windows=[Window(latency)] if video.has_edges else [],
         neighbours=Counting(*shape, [Sum(shape, latency)]),
     )

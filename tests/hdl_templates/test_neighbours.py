@@ -16,6 +16,7 @@ from tests.hdl_templates.test_video import (
     PATTERNS,
     WIDTH,
     Beat,
+    Pixel,
     Window,
     broken_off,
     delayed,
@@ -44,21 +45,6 @@ TABLE = np.random.default_rng(1).permutation(np.arange(32) % 3).astype(np.uint8)
 """The class of a code."""
 
 
-class Found(Part):
-    """`BITS` of a pixel, ``latency`` cycles later."""
-
-    module_name = "found"
-
-    def __init__(self, latency: int) -> None:
-        self.latency = latency
-        super().__init__({"rgb": In(24), "tap_bits": Out(BITS)})
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        m.d.comb += self.tap_bits.eq(delayed(m, self.rgb[24 - BITS :], self.latency))
-        return m
-
-
 class Decision(Part):
     """`TABLE`, ``latency`` cycles later; 0 and others alone if there is one bit for it."""
 
@@ -83,7 +69,7 @@ def core(size: int, answer: Answer, *, latency: int = 0, pixels: int = 1, width:
     video = VideoFormat(max_width=WIDTH * pixels, answer=answer, pixels_per_clock=pixels)
     return VideoCore(
         video=video,
-        pixels=[Found(latency) for _ in range(pixels)],
+        pixels=[Pixel(BITS, latency, "tap_bits") for _ in range(pixels)],
         windows=[Window(latency) for _ in range(pixels)] if video.has_edges else [],
         neighbours=Neighbours(size, TAPS[size], [Decision(latency, width) for _ in range(pixels)]),
     )
@@ -213,7 +199,7 @@ def test_a_core_has_a_decision_for_each_pixel() -> None:
     with pytest.raises(ValueError, match="for each"):
         VideoCore(
             video=VideoFormat(answer="class"),
-            pixels=[Found(0)],
+            pixels=[Pixel(BITS, 0, "tap_bits")],
             windows=[],
             neighbours=Neighbours(3, TAPS[3], []),
         )

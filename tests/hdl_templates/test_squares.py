@@ -85,7 +85,7 @@ def test_squares_of_neighbourhoods() -> None:
     video = VideoFormat(max_width=WIDTH, answer="class", square=3)
     dut = VideoCore(
         video=video,
-        pixels=[near.Found(0)],
+        pixels=[Pixel(near.BITS, 0, "tap_bits")],
         windows=[],
         neighbours=Neighbours(5, near.TAPS[5], [near.Decision(1, 2)]),
         classes=3,

@@ -37,15 +37,16 @@ def delayed(m: Module, value: Any, cycles: int) -> Any:
 
 
 class Pixel(Part):
-    """The two high bits of red as a class, ``latency`` cycles later."""
+    """The high bits of red as a class, or as another port, ``latency`` cycles later."""
 
-    def __init__(self, width: int, latency: int) -> None:
-        self.module_name, self.width, self.latency = "pixel", width, latency
-        super().__init__({"rgb": In(24), "class_bits": Out(width)})
+    def __init__(self, width: int, latency: int, port: str = "class_bits") -> None:
+        self.module_name, self.width, self.latency, self.port = "pixel", width, latency, port
+        super().__init__({"rgb": In(24), port: Out(width)})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.d.comb += self.class_bits.eq(delayed(m, self.rgb[24 - self.width :], self.latency))
+        high = delayed(m, self.rgb[24 - self.width :], self.latency)
+        m.d.comb += getattr(self, self.port).eq(high)
         return m
 
 

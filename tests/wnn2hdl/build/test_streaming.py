@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from wnn2hdl.build.compile import compile_model
 from wnn2hdl.build.design import Mode
 from wnn2hdl.build.emission import emit, outermost_part, video_part
 from wnn2hdl.build.planning import CompileOptions, plan
-from wnn2hdl.build.playback import play
+from wnn2hdl.build.playback import Playback, play
 from wnn2hdl.build.streaming import beats, framed_answers, sample_frames
 from wnn2hdl.build.verification import open_build, verify_build
 from wnn2hdl.emit import cells_model, stream_testbench, stream_vectors, verilog
@@ -346,6 +347,23 @@ def neighbours() -> WisardModel:
     )
 
 
+def played_as_classified(
+    folder: Path, model: WisardModel, halo: int, imagery: Path, mode: Mode
+) -> tuple[Playback, NDArray[np.uint8]]:
+    """A picture that went through a core, which answered as the model does, and the model's classes."""
+    # A care set knows the whole picture with its borders, but not those of a crop.
+    crop = np.s_[:37, :61] if mode == "exact" else np.s_[:, :]
+    rgb = read_rgb(imagery / "7.png")[crop]
+    picture = folder.parent / "picture.png"
+    write_png(picture, rgb)
+    result = play(folder, picture, "icarus", silent)
+    classes = model_classifier(model).classify(with_halo(rgb, halo))
+    assert np.array_equal(result.foreground, classes != 0)
+    assert 0.1 < result.foreground.mean() < 0.9
+    assert result.cared == 1.0
+    return result, classes
+
+
 @pytest.mark.simulator
 @pytest.mark.parametrize(("per_clock", "stages", "mode"), [(1, None, "exact"), (2, 2, "domain")])
 def test_a_picture_through_a_core_of_neighbourhoods_is_classified_as_by_its_model(
@@ -364,20 +382,12 @@ def test_a_picture_through_a_core_of_neighbourhoods_is_classified_as_by_its_mode
     assert list(build.report["parts"]) == ["taps", "decision", "edge", "video", "ip", "sobel"]
     assert [claim["part"] for claim in build.report["proof"]["claims"]][-3:] == ["taps", "decision", "edge"]
     assert build.report["proof"]["status"] == "proved"
-    # A care set knows the whole picture with its borders, but not those of a crop.
-    rgb = read_rgb(imagery / "7.png")[: 37 if mode == "exact" else None, : 61 if mode == "exact" else None]
-    picture = tmp_path / "picture.png"
-    write_png(picture, rgb)
-    result = play(tmp_path / "near", picture, "icarus", silent)
-    classes = model_classifier(neighbours).classify(with_halo(rgb, 2))
-    assert np.array_equal(result.foreground, classes != 0)
-    assert 0.1 < result.foreground.mean() < 0.9
+    result, classes = played_as_classified(build.folder, neighbours, 2, imagery, mode)
     design = open_build(tmp_path / "near")[0]
     assert design.edges is not None
     assert result.edges is not None
     edges = design.edges.evaluate(framed_window_codes(classes != 0))
     assert np.array_equal(result.edges, edges)
-    assert result.cared == 1.0
     if mode == "exact":
         problems, _ = verify_build(tmp_path / "near", silent)
         assert not problems
@@ -420,14 +430,7 @@ def test_a_picture_through_a_core_that_counts_is_classified_as_by_its_model(
     edges = ["edge"] if answer == "both" else []
     assert list(build.report["parts"]) == ["planes", "context", *edges, "video", "ip", "sobel"]
     assert build.report["proof"]["status"] == "proved"
-    rgb = read_rgb(imagery / "7.png")[: 37 if mode == "exact" else None, : 61 if mode == "exact" else None]
-    picture = tmp_path / "picture.png"
-    write_png(picture, rgb)
-    result = play(tmp_path / "counts", picture, "icarus", silent)
-    classes = model_classifier(counts).classify(with_halo(rgb, 3))
-    assert np.array_equal(result.foreground, classes != 0)
-    assert 0.1 < result.foreground.mean() < 0.9
-    assert result.cared == 1.0
+    result, classes = played_as_classified(build.folder, counts, 3, imagery, mode)
     assert result.frame is not None
     assert np.array_equal(result.frame & 127, classes)
     if square:
